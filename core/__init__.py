@@ -1,0 +1,1 @@
+"""LuzEspecular: daylight illuminance, mirrors and glass included, by the Spherical Vector Model."""
