@@ -1,0 +1,67 @@
+# LuzEspecular: every target does its own set-up in .venv; nothing outside this folder is touched.
+#   make demo    solve the light-shelf room in Blender and draw it (results in build/demo)
+#   make test    lint, type checks and all tests
+
+SHELL := /bin/bash
+VENV  := .venv
+BIN   := $(VENV)/bin
+PY    := $(BIN)/python
+
+# Where tools/system_libraries.py puts what Blender needs and the machine lacks (an absent folder does no harm).
+export LD_LIBRARY_PATH := $(CURDIR)/$(VENV)/system-libraries$(if $(LD_LIBRARY_PATH),:$(LD_LIBRARY_PATH))
+
+# Blender's module for Python exists for one Python version only: 3.11.
+PYTHON ?= $(shell for p in python3.11 python3 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test pytest lint format types zip blend benchmark clean
+
+help:
+	@echo "make demo       solve the light-shelf room in Blender: lux per surface, pictures (build/demo)"
+	@echo "make test       lint, type checks, all tests"
+	@echo "make lint       ruff check and ruff format --check;  make format mends what can be mended"
+	@echo "make types      mypy on the solver"
+	@echo "make zip        build and validate the Blender extension (dist/)"
+	@echo "make blend      write examples/light_shelf/light_shelf.blend again"
+	@echo "make clean      remove .venv, build and dist"
+
+demo: $(VENV)/.demo
+	@$(PY) examples/light_shelf/demo.py --output build/demo
+
+test: lint types pytest
+
+pytest: $(VENV)/.test
+	$(PY) -m pytest
+
+lint: $(VENV)/.test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+format: $(VENV)/.test
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+types: $(VENV)/.test
+	$(BIN)/mypy
+
+zip: $(VENV)/.demo
+	$(PY) tools/build_extension.py --output dist
+
+blend: $(VENV)/.demo
+	$(PY) examples/light_shelf/make_blend.py
+
+clean:
+	rm -rf $(VENV) build dist *.egg-info
+
+$(PY):
+	@test -n "$(PYTHON)" || { echo "Python 3.11 was not found (Blender's module needs exactly this version)." \
+		"Install it, or say where it is: make $(MAKECMDGOALS) PYTHON=/path/to/python3.11"; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "$(PYTHON) cannot make virtual environments:" \
+		"install its venv module (Debian, Ubuntu: apt-get install python3.11-venv) and try again."; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.demo $(VENV)/.test: $(VENV)/.%: pyproject.toml | $(PY)
+	$(PY) -m pip install --quiet --disable-pip-version-check -e ".[$*]"
+	$(PY) tools/system_libraries.py
+	@touch $@
