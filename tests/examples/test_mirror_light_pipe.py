@@ -1,0 +1,47 @@
+"""The pipe against closed forms: a mirror pipe is a periodic window when one unfolds the reflections."""
+
+import math
+
+import pytest
+
+
+def sun_transmittance(length, width, reflectance, altitude, azimuth):
+    """Exact for a square pipe: over its section, the Sun's rays meet floor(s) or floor(s) + 1 walls of each pair."""
+    share = 1.0
+    for component in (abs(math.sin(math.radians(azimuth))), abs(math.cos(math.radians(azimuth)))):
+        crossings = length / math.tan(math.radians(altitude)) * component / width
+        whole, part = divmod(crossings, 1)
+        share *= (1 - part) * reflectance**whole + part * reflectance ** (whole + 1)
+    return share
+
+
+def corner_factor(a, b, height):
+    """Configuration factor from a point to a parallel rectangle a x b, one corner straight above it."""
+    x, y = a / height, b / height
+    p, q = math.hypot(1, x), math.hypot(1, y)
+    return (x / p * math.atan(y / p) + y / q * math.atan(x / q)) / (2 * math.pi)
+
+
+@pytest.mark.parametrize("altitude", [20.0, 40.0, 60.0])
+def test_sunlight(example, altitude):
+    pipes = example("mirror_light_pipe.py")
+    column = 1 + pipes.ALTITUDES.index(altitude)
+    exact = sun_transmittance(2 * pipes.WIDTH, pipes.WIDTH, pipes.REFLECTANCE, altitude, pipes.AZIMUTH)
+    assert pipes.transmittances(2)[column] == pytest.approx(exact, rel=2e-3)
+
+
+def test_uniform_sky_at_the_centre_of_the_bottom(example):
+    import luzespecular as luz
+
+    pipes = example("mirror_light_pipe.py")
+    width, length = pipes.WIDTH, 2 * pipes.WIDTH
+    result = luz.prepare(pipes.pipe(length), max_area=0.005, specular_cutoff=1e-5).solve(
+        luz.Daylight(sky=luz.UniformSky(1 / math.pi))
+    )
+    exact = 0.0
+    for i in range(-60, 61):
+        for j in range(-60, 61):
+            edges = [(k + s) * width for k in (i, j) for s in (-0.5, 0.5)]
+            signed = [math.copysign(corner_factor(abs(x), abs(y), length), x * y) for x in edges[:2] for y in edges[2:]]
+            exact += pipes.REFLECTANCE ** (abs(i) + abs(j)) * (signed[3] - signed[2] - signed[1] + signed[0])
+    assert result.at([[width / 2, width / 2, 0]], [[0, 0, 1]])[0] == pytest.approx(exact, rel=5e-3)
