@@ -52,7 +52,7 @@ def daylight_factors() -> tuple[np.ndarray, np.ndarray]:
 
 
 def statistics(factors: np.ndarray, threshold: float = 2.0) -> dict[str, float]:
-    """Return minimum, mean, median, maximum, uniformity (minimum / mean) and the share above a threshold, in percent."""
+    """Return minimum, mean, median, maximum, uniformity (minimum / mean) and the share from a threshold up [%]."""
     return {
         "minimum": float(factors.min()),
         "mean": float(factors.mean()),

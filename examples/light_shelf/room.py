@@ -121,9 +121,9 @@ def daylight(hour: float = 12.0, sky: str | None = "clear", sun: bool = True):
 
 
 def grid(vertices: list[tuple[float, float, float]], step: float = 0.1):
-    """Return a rectangle as triangles of at most ``step``²/2: its vertices and its faces, oriented as the rectangle.
+    """Return a rectangle as squares of at most ``step``: its vertices and its faces, oriented as the rectangle.
 
-    A step of 0.1 m gives the paper's triangles of 0.005 m².
+    Cut in two, squares of 0.1 m are the paper's triangles of 0.005 m².
     """
     first, second, _, last = vertices
 
@@ -137,10 +137,5 @@ def grid(vertices: list[tuple[float, float, float]], step: float = 0.1):
         for j in range(along + 1)
         for i in range(across + 1)
     ]
-    faces = []
-    for j in range(along):
-        for i in range(across):
-            a = j * (across + 1) + i
-            b, c, d = a + 1, a + across + 2, a + across + 1
-            faces += [(a, b, c), (a, c, d)]
-    return points, faces
+    corners = [j * (across + 1) + i for j in range(along) for i in range(across)]
+    return points, [(a, a + 1, a + across + 2, a + across + 1) for a in corners]

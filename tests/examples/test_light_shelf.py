@@ -38,12 +38,12 @@ def test_the_room_is_what_the_paper_describes(room):
         centre = np.mean(vertices, axis=0)
         inwards = np.array([1.5, 1.5, {"shelf_bottom": 0.0, "shelf_top": 3.0}.get(name, 1.5)]) - centre
         assert normal @ inwards > 0, f"{name} looks away from the room"
-        points, triangles = room.grid(vertices)
-        corners = np.array(points)[np.array(triangles)]
-        cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        np.testing.assert_allclose(cross.sum(axis=0) / 2, normal, atol=1e-12)
+        points, squares = room.grid(vertices)
+        corners = np.array(points)[np.array(squares)]
+        cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0])
+        np.testing.assert_allclose(cross.sum(axis=0), normal, atol=1e-12)
         assert np.all(cross @ normal > 0) and np.linalg.norm(cross, axis=1).max() / 2 <= room.FACE_AREA + 1e-12
-        faces += len(triangles)
+        faces += 2 * len(squares)
     assert sum(areas.values()) == pytest.approx(54.0)
     assert faces == 10_860
     assert set(room.REFLECTANCE) == set(room.SURFACES)
