@@ -25,17 +25,22 @@ def blender_tool() -> tuple[Path, Path]:
     return tools[-1], scripts / "modules" / "_bpy_internal" / "extensions" / "tags.py"
 
 
-def build(output: Path) -> Path:
+def build(output: Path, quiet: bool = False) -> Path:
     """Write ``luzespecular-<version>.zip`` into a folder and return its path; raise where Blender's tool objects."""
     tool, tags = blender_tool()
     version = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))["version"]
     output.mkdir(parents=True, exist_ok=True)
     archive = output.resolve() / f"luzespecular-{version}.zip"
-    run = [sys.executable, str(tool)]
-    check = ["--valid-tags", str(tags)]
-    subprocess.run([*run, "validate", *check, str(ROOT)], check=True)
-    subprocess.run([*run, "build", "--source-dir", str(ROOT), "--output-filepath", str(archive), *check], check=True)
-    subprocess.run([*run, "validate", *check, str(archive)], check=True)
+    for command in (
+        ("validate", "--valid-tags", str(tags), str(ROOT)),
+        ("build", "--valid-tags", str(tags), "--source-dir", str(ROOT), "--output-filepath", str(archive)),
+        ("validate", "--valid-tags", str(tags), str(archive)),
+    ):
+        done = subprocess.run([sys.executable, str(tool), *command], capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise SystemExit(f"Blender's extension tool objects to '{command[0]}':\n{done.stdout}{done.stderr}")
+        if not quiet:
+            print(done.stdout, end="")
     return archive
 
 
@@ -43,10 +48,7 @@ def main() -> int:
     """Read the command line and build."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=ROOT / "dist", help="folder for the archive (default: dist)")
-    try:
-        print(build(parser.parse_args().output))
-    except subprocess.CalledProcessError as error:
-        return error.returncode
+    print(build(parser.parse_args().output))
     return 0
 
 

@@ -1,0 +1,29 @@
+"""Blender from its Python module, apart from the user's own Blender, with this checkout's extension installed in it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import build_extension
+
+PACKAGE = "bl_ext.user_default.luzespecular"
+
+
+def start(folder: Path) -> None:
+    """Build the extension, start Blender with its user files in ``folder``, install the archive and enable it.
+
+    Call it before anything imports ``bpy``: Blender reads the place of its user files only once.
+    """
+    if "bpy" in sys.modules:
+        raise RuntimeError("Blender runs already: start the session before importing bpy")
+    os.environ["BLENDER_USER_RESOURCES"] = str(folder)
+    archive = build_extension.build(folder, quiet=True)
+    import bpy
+
+    bpy.ops.wm.read_factory_settings()
+    bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
+    if PACKAGE not in bpy.context.preferences.addons:
+        raise RuntimeError("Blender did not enable the extension; its messages above say why")
