@@ -2,9 +2,9 @@
 
     make demo        or        python examples/light_shelf/demo.py --output build/demo
 
-The extension is built, installed in a Blender of its own (the ``bpy`` module, with user files in a passing folder) and its
-operators do the work, as they would behind the window. Printed and saved as CSV: lux per surface. Saved: false-colour
-pictures, initial and final, one sheet of all of them, and the solved .blend.
+The extension is built and installed in a Blender of its own (the ``bpy`` module, with user files in a passing folder);
+its operators do the work, as they would behind the window. Printed and saved as CSV: lux per surface. Saved as well:
+false-colour pictures, initial and final, one sheet of all of them, and the solved .blend.
 """
 
 from __future__ import annotations

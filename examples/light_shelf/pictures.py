@@ -1,13 +1,13 @@
 """False-colour pictures of solved faces, rendered by Blender on the processor, without a window or graphics card.
 
 What is rendered is the extension's own results: its fine faces with its colour attribute, as light that the faces give
-off by themselves, shown by the Standard view transform, so that colours on the picture are those of the legend. Specular
-surfaces are hatched in black: between the stripes stands the illuminance that falls on them.
+off by themselves, shown by the Standard view transform, so that colours on the picture are those of the legend.
+Specular surfaces are hatched in black: between the stripes stands the illuminance that falls on them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,7 +21,9 @@ SAMPLES = 8
 
 
 @contextmanager
-def studio(results: bpy.types.Object, camera: bpy.types.Object, hatched: Collection[int], size: int) -> Iterator[Path]:
+def studio(
+    results: bpy.types.Object, camera: bpy.types.Object, hatched: Collection[int], size: int
+) -> Iterator[Callable[[Path], None]]:
     """Set up a passing scene that holds nothing but the results and the camera, and take it down again.
 
     Parameters
