@@ -48,8 +48,12 @@ types: $(VENV)/.test
 zip: $(VENV)/.demo
 	$(PY) tools/build_extension.py --output dist
 
-blend: $(VENV)/.demo
-	$(PY) examples/light_shelf/make_blend.py
+# Written by the oldest Blender supported, so that every later one opens it.
+blend: LTS := build/blender-4.2
+blend:
+	$(PYTHON) -m venv $(LTS)
+	$(LTS)/bin/python -m pip install --quiet --disable-pip-version-check "bpy>=4.2,<4.3"
+	$(LTS)/bin/python examples/light_shelf/make_blend.py
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info

@@ -23,7 +23,6 @@ def start(folder: Path) -> None:
     archive = build_extension.build(folder, quiet=True)
     import bpy
 
-    bpy.ops.wm.read_factory_settings()
     bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
     if PACKAGE not in bpy.context.preferences.addons:
         raise RuntimeError("Blender did not enable the extension; its messages above say why")

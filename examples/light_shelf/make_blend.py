@@ -31,7 +31,7 @@ def write(path: Path) -> None:
     """Build the three scenes in the running Blender and save them."""
     import bpy
 
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     blank = bpy.context.scene
     scenes = {key: add_scene(variant) for key, variant in room.VARIANTS.items()}
     window_scene = scenes["S1"]
