@@ -1,1 +1,43 @@
 """LuzEspecular: daylight illuminance, mirrors and glass included, by the Spherical Vector Model."""
+
+from .availability import availability, default_daylight
+from .balance import Balance
+from .daylight import Daylight
+from .errors import Cancelled, LuzEspecularError, SceneError
+from .globe import Globe
+from .materials import Material
+from .result import Result
+from .scene import Scene
+from .sky import CIESky, MeasuredSky, PerezSky, UniformSky
+from .sun import Sun, sun_position, sun_position_solar
+from .transfer import Transfer, prepare
+
+
+def solve(scene: Scene, light: Daylight, **prepare_options) -> Result:
+    """Prepare a scene and solve it for one light; options are those of `prepare`."""
+    return prepare(scene, **prepare_options).solve(light)
+
+
+__all__ = [
+    "Balance",
+    "CIESky",
+    "Cancelled",
+    "Daylight",
+    "Globe",
+    "LuzEspecularError",
+    "Material",
+    "MeasuredSky",
+    "PerezSky",
+    "Result",
+    "Scene",
+    "SceneError",
+    "Sun",
+    "Transfer",
+    "UniformSky",
+    "availability",
+    "default_daylight",
+    "prepare",
+    "solve",
+    "sun_position",
+    "sun_position_solar",
+]

@@ -1,0 +1,337 @@
+"""Fracture: planes into faces (what is reported), elements (what receives) and patches (what is emitted from)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import polygons
+from .planes import Planes
+
+DEFAULT_FACES = 10_000
+"""Faces that a scene is cut into where the user gives no ``max_area``."""
+
+FEWEST_ELEMENTS = 4_000
+"""Receivers that the diffuse surfaces have together, however coarse their faces are."""
+
+ELEMENTS_PER_PLAIN_SURFACE = 96
+"""Receivers inside a surface that neither emits nor reflects diffusely, and so is not cut itself."""
+
+
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """Triangles with what they come from.
+
+    Attributes
+    ----------
+    vertices : (n, 3, 3) float, relative to the scene's centre
+    parent : (n,) int
+        Index of the piece or face that each was cut from.
+    """
+
+    vertices: np.ndarray
+    parent: np.ndarray
+
+    @property
+    def areas(self) -> np.ndarray:
+        """(n,) float [m²]."""
+        return polygons.areas(self.vertices)
+
+    @property
+    def centroids(self) -> np.ndarray:
+        """(n, 3) float."""
+        return self.vertices.mean(axis=1)
+
+
+def cut_pieces(pieces, counts, max_areas) -> Triangles:
+    """Cut convex pieces into triangles of limited area.
+
+    Parallelograms become regular grids of near-square cells, two triangles each, as in the paper; other shapes are
+    halved across their longest edge.
+
+    Parameters
+    ----------
+    pieces : (m, v, 3) float, padded
+    counts : (m,) int
+    max_areas : (m,) float
+        Largest area of a triangle [m²]; inf = only triangulated.
+
+    Returns
+    -------
+    Triangles
+    """
+    counts = np.asarray(counts)
+    limits = np.asarray(max_areas, float)
+    order, triangles = [], []
+    v = pieces
+    closes = (counts == 4) & (pieces.shape[1] >= 4)
+    if closes.any():
+        gap = v[:, 0] + v[:, 2] - v[:, 1] - v[:, min(3, v.shape[1] - 1)]
+        closes &= np.linalg.norm(gap, axis=1) <= 1e-9 * np.ptp(v, axis=1).max(axis=1)
+    side = np.sqrt(2 * limits)
+    for length in np.unique(counts[~closes]):
+        rows = np.flatnonzero(~closes & (counts == length))
+        fan = np.stack([np.stack([v[rows, 0], v[rows, k], v[rows, k + 1]], axis=1) for k in range(1, length - 1)], axis=1)
+        triangles.append(fan.reshape(-1, 3, 3))
+        order.append(np.repeat(rows, length - 2))
+    for row in np.flatnonzero(closes):
+        a, b, d = v[row, 0], v[row, 1], v[row, 3]
+        nu = max(1, math.ceil(np.linalg.norm(b - a) / side[row] - 1e-9))
+        nv = max(1, math.ceil(np.linalg.norm(d - a) / side[row] - 1e-9))
+        while np.linalg.norm(np.cross(b - a, d - a)) / (nu * nv) > 2 * limits[row] * (1 + 1e-9):
+            nu, nv = nu + 1, nv + 1
+        corner = a + (np.arange(nu + 1) / nu)[:, None, None] * (b - a) + (np.arange(nv + 1) / nv)[None, :, None] * (d - a)
+        p, q, r, s = corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]
+        cells = np.stack([np.stack([p, q, r], axis=2), np.stack([p, r, s], axis=2)], axis=2)
+        triangles.append(cells.reshape(-1, 3, 3))
+        order.append(np.full(2 * nu * nv, row))
+    parent = np.concatenate(order)
+    vertices = np.concatenate(triangles)
+    arranged = np.argsort(parent, kind="stable")
+    return halve(Triangles(vertices[arranged], parent[arranged]), limits)
+
+
+def halve(triangles: Triangles, limits) -> Triangles:
+    """Halve triangles across their longest edge until none is larger than its parent's limit.
+
+    Parameters
+    ----------
+    triangles : Triangles
+    limits : (parents,) float [m²]
+
+    Returns
+    -------
+    Triangles
+        In the order of their parents.
+    """
+    vertices, parent = triangles.vertices, triangles.parent
+    limits = np.asarray(limits, float)
+    done_vertices, done_parent = [], []
+    while len(vertices):
+        large = polygons.areas(vertices) > limits[parent] * (1 + 1e-9)
+        done_vertices.append(vertices[~large])
+        done_parent.append(parent[~large])
+        vertices, parent = vertices[large], parent[large]
+        if not len(vertices):
+            break
+        edges = np.linalg.norm(np.roll(vertices, -1, axis=1) - vertices, axis=2)
+        turn = (np.argmax(edges, axis=1)[:, None] + np.arange(3)) % 3
+        a, b, c = np.moveaxis(np.take_along_axis(vertices, turn[:, :, None], axis=1), 1, 0)
+        middle = 0.5 * (a + b)
+        vertices = np.stack([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)], axis=1).reshape(-1, 3, 3)
+        parent = np.repeat(parent, 2)
+    vertices, parent = np.concatenate(done_vertices), np.concatenate(done_parent)
+    order = np.argsort(parent, kind="stable")
+    return Triangles(vertices[order], parent[order])
+
+
+@dataclass(frozen=True, eq=False)
+class Fracture:
+    """Faces and elements of a scene; the faces' backs follow their fronts where a surface is two-sided.
+
+    Attributes
+    ----------
+    faces : (f, 3, 3) float
+        Triangles reported to the user, relative to the scene's centre.
+    face_surface, face_source : (f,) int
+        Surface, and face of it as given, that each is a part of.
+    face_areas : (f,) float [m²]
+    face_normals : (f, 3) float
+    back_of : (b,) int
+        Faces whose backs are receivers as well.
+    elements : (e, 3, 3) float
+        Triangles whose centroids receive; each a part of one face's front or back.
+    element_side : (e,) int
+        Face of each front element; number of faces plus index into ``back_of`` for a back's.
+    element_sheet : (e,) int
+        Sheet, plus the number of sheets for backs.
+    element_areas : (e,) float [m²]
+    """
+
+    faces: np.ndarray
+    face_surface: np.ndarray
+    face_source: np.ndarray
+    face_areas: np.ndarray
+    face_normals: np.ndarray
+    back_of: np.ndarray
+    elements: np.ndarray
+    element_side: np.ndarray
+    element_sheet: np.ndarray
+    element_areas: np.ndarray
+
+    @property
+    def sides(self) -> int:
+        """Number of fronts and backs."""
+        return len(self.faces) + len(self.back_of)
+
+    def side_means(self, values) -> np.ndarray:
+        """Area-weighted means over faces' fronts and backs ``(sides, ...)`` of values per element ``(e, ...)``."""
+        area = np.bincount(self.element_side, weights=self.element_areas, minlength=self.sides)
+        mean = np.bincount(self.element_side, weights=self.element_areas * values, minlength=self.sides)
+        return mean / area
+
+
+def fracture(planes: Planes, cut, two_sided, max_area: float | None) -> Fracture:
+    """Cut the scene's planes into faces and elements.
+
+    Parameters
+    ----------
+    planes : Planes
+    cut : (surfaces,) bool
+        Surfaces that reflect or emit diffusely. Others are never cut for their size alone.
+    two_sided : (surfaces,) bool
+    max_area : float or None
+        Largest area of a face [m²]; None = chosen for the scene; inf = faces as given, only triangulated.
+
+    Returns
+    -------
+    Fracture
+    """
+    surface = planes.sheet_surface[planes.given_sheet]
+    piece_areas = polygons.areas(planes.given)
+    is_cut = np.asarray(cut)[surface]
+    total = piece_areas[is_cut].sum()
+    limit = total / DEFAULT_FACES if max_area is None else max_area
+    faces = cut_pieces(planes.given, planes.given_counts, np.where(is_cut, limit if total else math.inf, math.inf))
+    face_surface = surface[faces.parent]
+    surface_area = np.bincount(surface, weights=piece_areas, minlength=len(planes.surfaces))
+    fine = np.where(np.asarray(cut), total / FEWEST_ELEMENTS if total else math.inf, surface_area / ELEMENTS_PER_PLAIN_SURFACE)
+    parts = halve(Triangles(faces.vertices, np.arange(len(faces.parent))), fine[face_surface])
+    sheet = planes.given_sheet[faces.parent]
+    back_of = np.flatnonzero(np.asarray(two_sided)[face_surface])
+    place = np.full(len(faces.parent), -1)
+    place[back_of] = len(faces.parent) + np.arange(len(back_of))
+    behind = np.flatnonzero(place[parts.parent] >= 0)
+    side = np.concatenate([parts.parent, place[parts.parent[behind]]])
+    element_sheet = np.concatenate([sheet[parts.parent], sheet[parts.parent[behind]] + len(planes.sheet_surface)])
+    elements = np.concatenate([parts.vertices, parts.vertices[behind][:, ::-1]])
+    return Fracture(
+        faces=faces.vertices,
+        face_surface=face_surface,
+        face_source=planes.given_source[faces.parent],
+        face_areas=faces.areas,
+        face_normals=planes.sheet_normal[sheet],
+        back_of=back_of,
+        elements=elements,
+        element_side=side,
+        element_sheet=element_sheet,
+        element_areas=polygons.areas(elements),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Patches:
+    """Groups of elements that share one exitance, with a grid per sheet to find them by.
+
+    The backs of two-sided sheets follow the fronts: sheet number plus the number of sheets.
+
+    Attributes
+    ----------
+    count : int
+    of_element : (e,) int
+        Patch of each element, -1 where it has none (its surface neither emits nor reflects diffusely).
+    grid_origin, grid_scale : (2s, 2) float
+        Cell of an in-plane point: floor((axes · x − origin) · scale).
+    grid_shape : (2s, 2) int
+    grid_base : (2s,) int
+        Where the sheet's cells begin in ``grid``; -1 for a sheet without patches.
+    grid : (cells,) int
+    """
+
+    count: int
+    of_element: np.ndarray
+    grid_origin: np.ndarray
+    grid_scale: np.ndarray
+    grid_shape: np.ndarray
+    grid_base: np.ndarray
+    grid: np.ndarray
+
+
+def make_patches(planes: Planes, centroids, element_sheet, element_active, areas, target: int) -> Patches:
+    """Gather elements into patches of about equal area.
+
+    Sheets large enough get a grid of cells; small ones (curved meshes) are gathered by place, facing and surface.
+
+    Parameters
+    ----------
+    planes : Planes
+    centroids : (e, 3) float
+    element_sheet : (e,) int
+    element_active : (e,) bool
+        Whether the element can emit diffuse light.
+    areas : (e,) float [m²]
+    target : int
+        About how many patches to make.
+
+    Returns
+    -------
+    Patches
+    """
+    fronts = len(planes.sheet_surface)
+    sheets = 2 * fronts
+    of_element = np.full(len(centroids), -1, np.int64)
+    origin, scale = np.zeros((sheets, 2)), np.zeros((sheets, 2))
+    shape, base = np.ones((sheets, 2), np.int64), np.full(sheets, -1, np.int64)
+    active = np.flatnonzero(element_active)
+    if not len(active):
+        return Patches(0, of_element, origin, scale, shape, base, np.zeros(0, np.int64))
+    patch_area = areas[active].sum() / target
+    order = active[np.argsort(element_sheet[active], kind="stable")]
+    used, starts = np.unique(element_sheet[order], return_index=True)
+    sheet_area = np.add.reduceat(areas[order], starts)
+    bounds = np.append(starts, len(order))
+    grid, cells, count = [], 0, 0
+    small = []
+    for k, sheet in enumerate(used):
+        members = order[bounds[k] : bounds[k + 1]]
+        if sheet_area[k] <= 1.5 * patch_area or len(members) == 1:
+            small.append(k)
+            continue
+        place = centroids[members] @ planes.sheet_axes[sheet % fronts].T
+        # the outline's extent, not the centroids', so that cells are of even size
+        outline = planes.outlines[planes.outline_sheet == sheet % fronts].reshape(-1, 3) @ planes.sheet_axes[sheet % fronts].T
+        low, extent = outline.min(axis=0), np.maximum(np.ptp(outline, axis=0), 1e-300)
+        n = np.maximum(1, np.rint(extent / math.sqrt(patch_area))).astype(np.int64)
+        while n.prod() > 4 * len(members):
+            n = np.maximum(1, n // 2)
+        origin[sheet], scale[sheet], shape[sheet], base[sheet] = low, n / extent, n, cells
+        cell = np.clip(np.floor((place - low) * scale[sheet]).astype(np.int64), 0, n - 1)
+        filled, patch = np.unique(cell[:, 0] * n[1] + cell[:, 1], return_inverse=True)
+        of_element[members] = count + patch.reshape(-1)
+        grid.append(count + _fill_cells(filled, n))
+        cells += int(n.prod())
+        count += len(filled)
+    if small:
+        count = _gather_small(planes, centroids, [(used[k], order[bounds[k] : bounds[k + 1]]) for k in small], patch_area, of_element, count)
+        for k in small:
+            sheet = used[k]
+            base[sheet] = cells
+            grid.append(of_element[order[bounds[k] : bounds[k] + 1]])
+            cells += 1
+    return Patches(count, of_element, origin, scale, shape, base, np.concatenate(grid))
+
+
+def _gather_small(planes, centroids, groups, patch_area, of_element, count) -> int:
+    sheet_of = np.array([sheet for sheet, _ in groups])
+    middle = np.array([centroids[members].mean(axis=0) for _, members in groups])
+    fronts = len(planes.sheet_surface)
+    back = sheet_of >= fronts
+    normal = planes.sheet_normal[sheet_of % fronts] * np.where(back, -1.0, 1.0)[:, None]
+    facing = np.argmax(np.abs(normal), axis=1) * 2 + (np.take_along_axis(normal, np.argmax(np.abs(normal), axis=1)[:, None], 1)[:, 0] > 0)
+    key = np.c_[planes.sheet_surface[sheet_of % fronts], back, facing, np.floor(middle / math.sqrt(patch_area))]
+    _, patch = np.unique(key, axis=0, return_inverse=True)
+    patch = patch.reshape(-1)
+    for number, (_, members) in zip(patch, groups, strict=True):
+        of_element[members] = count + number
+    return count + int(patch.max()) + 1
+
+
+def _fill_cells(filled: np.ndarray, n: np.ndarray) -> np.ndarray:
+    """(cells,) int: for each cell of a grid the nearest filled one's number."""
+    if len(filled) == n.prod():
+        return np.arange(len(filled))
+    every = np.stack(np.unravel_index(np.arange(n.prod()), n), axis=1)
+    distance = ((every[:, None] - every[filled][None]) ** 2).sum(axis=2)
+    return np.argmin(distance, axis=1)

@@ -1,0 +1,290 @@
+"""The globe of parcels: directions shared by every receiver (Claro 1998; Claro & Pereira 2001, fig. 1).
+
+The sphere is cut from zenith to nadir into bands of equal height in polar angle, each band into parcels of
+equal width in azimuth. A band at mid polar angle θ holds ``1 + round(2.55 · bands · sin θ)`` parcels, so solid angles are
+nearly equal and 60 bands give the paper's 5,902 parcels.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .errors import SceneError
+
+PARCELS_PER_BAND_FACTOR = 2.55
+MAX_BANDS = 2000
+_HORIZON_SUBDIVISION = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Globe:
+    """Parcels of the sphere of directions.
+
+    Parameters
+    ----------
+    bands : int
+        Number of bands from zenith to nadir, 2 or more.
+
+    Raises
+    ------
+    SceneError
+        Where ``bands`` is no integer between 2 and 2000.
+    """
+
+    bands: int = 60
+
+    def __post_init__(self):
+        if isinstance(self.bands, bool) or not isinstance(self.bands, int | np.integer):
+            raise SceneError(f"bands must be a whole number (60 is usual), not {self.bands!r}")
+        if not 2 <= self.bands <= MAX_BANDS:
+            raise SceneError(f"bands must lie between 2 and {MAX_BANDS}, not {self.bands}; 60 is usual")
+
+    @cached_property
+    def parcels_in_band(self) -> np.ndarray:
+        """(bands,) int: parcels in each band, from the zenith down."""
+        mid = (np.arange(self.bands) + 0.5) * np.pi / self.bands
+        half = 1 + np.rint(PARCELS_PER_BAND_FACTOR * self.bands * np.sin(mid)).astype(np.int64)
+        return np.minimum(half, half[::-1])  # symmetric to the last bit
+
+    @cached_property
+    def band_starts(self) -> np.ndarray:
+        """(bands + 1,) int: index of each band's first parcel; the last entry is the number of parcels."""
+        return np.concatenate(([0], np.cumsum(self.parcels_in_band)))
+
+    @property
+    def count(self) -> int:
+        """Number of parcels."""
+        return int(self.band_starts[-1])
+
+    @cached_property
+    def band_of(self) -> np.ndarray:
+        """(count,) int: band of each parcel."""
+        return np.repeat(np.arange(self.bands), self.parcels_in_band)
+
+    @cached_property
+    def polar_edges(self) -> np.ndarray:
+        """(bands + 1,) float: polar angle of the band limits [rad], 0 at the zenith."""
+        return np.linspace(0.0, np.pi, self.bands + 1)
+
+    @cached_property
+    def polar(self) -> np.ndarray:
+        """(count,) float: polar angle of the parcel centres [rad]."""
+        return (self.band_of + 0.5) * (np.pi / self.bands)
+
+    @cached_property
+    def azimuth_width(self) -> np.ndarray:
+        """(count,) float: width of each parcel in azimuth [rad]."""
+        return (2 * np.pi / self.parcels_in_band)[self.band_of]
+
+    @cached_property
+    def azimuth(self) -> np.ndarray:
+        """(count,) float: azimuth of the parcel centres, clockwise from north [rad]."""
+        return (np.arange(self.count) - self.band_starts[self.band_of] + 0.5) * self.azimuth_width
+
+    @cached_property
+    def directions(self) -> np.ndarray:
+        """(count, 3) float: direction cosines of the parcel centres (east, north, up)."""
+        return direction_of(self.polar, self.azimuth)
+
+    @cached_property
+    def solid_angles(self) -> np.ndarray:
+        """(count,) float: exact solid angle of each parcel [sr]; they sum to 4π."""
+        cosines = np.cos(self.polar_edges)
+        return (cosines[:-1] - cosines[1:])[self.band_of] * self.azimuth_width
+
+    @cached_property
+    def half_widths(self) -> np.ndarray:
+        """(count, 2) float: half the parcel's extent along polar angle and along azimuth [rad on the sphere]."""
+        across = np.full(self.count, 0.5 * np.pi / self.bands)
+        # of equal area with the parcel, so that the rectangle stands for it in the tangent plane
+        return np.stack([across, self.solid_angles / (4 * across)], axis=1)
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """(count, 2, 3) float: unit vectors of growing polar angle and growing azimuth at the parcel centres."""
+        ct, st = np.cos(self.polar), np.sin(self.polar)
+        ca, sa = np.cos(self.azimuth), np.sin(self.azimuth)
+        along_polar = np.stack([ct * sa, ct * ca, -st], axis=1)
+        along_azimuth = np.stack([ca, -sa, np.zeros_like(ca)], axis=1)
+        return np.stack([along_polar, along_azimuth], axis=1)
+
+    @cached_property
+    def first_moments(self) -> np.ndarray:
+        """(count, 3) float: exact ∫ d dω over each parcel, from which cosine weights follow."""
+        t0, t1 = self.polar_edges[self.band_of], self.polar_edges[self.band_of + 1]
+        half = 0.5 * self.azimuth_width
+        sin_squared = 0.5 * (t1 - t0) - 0.25 * (np.sin(2 * t1) - np.sin(2 * t0))
+        level = sin_squared * 2 * np.sin(half)
+        up = 0.5 * (np.sin(t1) ** 2 - np.sin(t0) ** 2) * 2 * half
+        return np.stack([level * np.sin(self.azimuth), level * np.cos(self.azimuth), up], axis=1)
+
+    def subdirections(self, parcels, splits: int) -> np.ndarray:
+        """Centres of ``splits`` × ``splits`` parts of equal solid angle of each parcel.
+
+        Parameters
+        ----------
+        parcels : (m,) array of int
+        splits : int
+
+        Returns
+        -------
+        (m, splits², 3) float
+        """
+        parcels = np.asarray(parcels)
+        step = (np.arange(splits) + 0.5) / splits
+        c0 = np.cos(self.polar_edges[self.band_of[parcels]])[:, None]
+        c1 = np.cos(self.polar_edges[self.band_of[parcels] + 1])[:, None]
+        cosine = c0 + (c1 - c0) * step
+        azimuth = self.azimuth[parcels][:, None] + (step - 0.5) * self.azimuth_width[parcels][:, None]
+        polar = np.arccos(np.clip(cosine, -1.0, 1.0))
+        grid = direction_of(
+            np.repeat(polar, splits, axis=1).ravel(), np.broadcast_to(np.tile(azimuth, splits), (len(parcels), splits**2)).ravel()
+        )
+        return grid.reshape(len(parcels), splits**2, 3)
+
+    def parcel_of(self, directions) -> np.ndarray:
+        """Index of the parcel that holds each direction, in constant time.
+
+        Parameters
+        ----------
+        directions : (..., 3) array of float
+            Of any length but zero.
+
+        Returns
+        -------
+        (...) int
+        """
+        d = np.asarray(directions, float)
+        polar = np.arctan2(np.hypot(d[..., 0], d[..., 1]), d[..., 2])
+        band = np.minimum((polar * (self.bands / np.pi)).astype(np.int64), self.bands - 1)
+        turn = np.mod(np.arctan2(d[..., 0], d[..., 1]) / (2 * np.pi), 1.0)
+        in_band = self.parcels_in_band[band]
+        return self.band_starts[band] + np.minimum((turn * in_band).astype(np.int64), in_band - 1)
+
+    def interpolation(self, directions) -> tuple[np.ndarray, np.ndarray]:
+        """Four parcels and weights that interpolate a smooth function of direction linearly.
+
+        Never mixes parcels above the horizon with parcels below it, so that the sky's edge stays sharp: there
+        the two bands on the direction's own side are continued.
+
+        Parameters
+        ----------
+        directions : (m, 3) array of float
+
+        Returns
+        -------
+        parcels : (m, 4) int
+        weights : (m, 4) float
+            They sum to 1 for each direction.
+        """
+        d = np.asarray(directions, float)
+        polar = np.arctan2(np.hypot(d[:, 0], d[:, 1]), d[:, 2])
+        turn = np.mod(np.arctan2(d[:, 0], d[:, 1]) / (2 * np.pi), 1.0)
+        place = polar * (self.bands / np.pi) - 0.5
+        upper_last = (self.bands + 1) // 2 - 1  # last band with its centre on or above the horizon
+        above = d[:, 2] >= 0
+        low = np.where(above, 0, min(upper_last + 1, self.bands - 1))
+        high = np.where(above, upper_last, self.bands - 1)
+        first = np.clip(np.floor(place), low, np.maximum(high - 1, low)).astype(np.int64)
+        second = np.minimum(first + 1, high)
+        share = np.where(second > first, np.clip(place - first, -0.5, 1.5), 0.0)
+        parcels, weights = [], []
+        for band, band_share in ((first, 1 - share), (second, share)):
+            n = self.parcels_in_band[band]
+            position = turn * n - 0.5
+            left = np.floor(position)
+            fraction = position - left
+            left = left.astype(np.int64)
+            parcels += [self.band_starts[band] + np.mod(left, n), self.band_starts[band] + np.mod(left + 1, n)]
+            weights += [band_share * (1 - fraction), band_share * fraction]
+        return np.stack(parcels, axis=1), np.stack(weights, axis=1)
+
+    def hemisphere(self, normal) -> Hemisphere:
+        """The half of the globe that a plane with this normal looks at.
+
+        Parcels that the plane's own horizon cuts are represented by the part above it.
+
+        Parameters
+        ----------
+        normal : (3,) array of float
+            Of any length but zero.
+
+        Returns
+        -------
+        Hemisphere
+        """
+        n = np.asarray(normal, float)
+        n = n / np.linalg.norm(n)
+        cosine = self.directions @ n
+        reach = np.hypot(*self.half_widths.T) * 1.3
+        parcels = np.flatnonzero(cosine > -reach)
+        cut = np.flatnonzero(np.abs(cosine[parcels]) <= reach[parcels])
+        directions = self.directions[parcels].copy()
+        weights = self.first_moments[parcels] @ n / np.pi
+        half_widths = self.half_widths[parcels].copy()
+        if len(cut):
+            parts = self.subdirections(parcels[cut], _HORIZON_SUBDIVISION)
+            lit = np.maximum(parts @ n, 0.0)
+            part = self.solid_angles[parcels[cut]] / _HORIZON_SUBDIVISION**2
+            weights[cut] = lit.sum(axis=1) * part / np.pi
+            seen = (lit > 0).sum(axis=1)
+            centre = np.einsum("ms,msc->mc", (lit > 0).astype(float), parts)
+            ok = seen > 0
+            directions[cut[ok]] = centre[ok] / np.linalg.norm(centre[ok], axis=1, keepdims=True)
+            half_widths[cut] *= np.sqrt(np.maximum(seen, 1) / _HORIZON_SUBDIVISION**2)[:, None]
+            weights[cut[~ok]] = 0.0
+            free = np.ones(len(parcels), bool)
+            free[cut] = False
+            # the whole parcels are exact, so the sampled ones must make up the rest of exactly 1
+            sampled = weights[cut].sum()
+            if sampled > 0:
+                weights[cut] *= (1.0 - weights[free].sum()) / sampled
+        keep = weights > 0
+        return Hemisphere(
+            normal=n,
+            parcels=parcels[keep],
+            directions=directions[keep],
+            weights=weights[keep] / weights[keep].sum(),
+            half_widths=half_widths[keep],
+            axes=self.axes[parcels[keep]],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Hemisphere:
+    """Directions that a plane looks at, with their cosine weights.
+
+    Attributes
+    ----------
+    normal : (3,) float, unit
+    parcels : (k,) int, index on the globe
+    directions : (k, 3) float, unit; the centre of what the plane sees of the parcel
+    weights : (k,) float, ∫ cos θ dω / π over that part; they sum to 1
+    half_widths : (k, 2) float [rad]
+    axes : (k, 2, 3) float, unit vectors along the half widths
+    """
+
+    normal: np.ndarray
+    parcels: np.ndarray
+    directions: np.ndarray
+    weights: np.ndarray
+    half_widths: np.ndarray
+    axes: np.ndarray
+
+
+def direction_of(polar, azimuth) -> np.ndarray:
+    """Direction cosines (east, north, up) from polar angle and azimuth [rad].
+
+    Parameters
+    ----------
+    polar, azimuth : (m,) arrays of float
+
+    Returns
+    -------
+    (m, 3) float
+    """
+    s = np.sin(polar)
+    return np.stack([s * np.sin(azimuth), s * np.cos(azimuth), np.cos(polar)], axis=-1)

@@ -1,0 +1,285 @@
+"""Polygons in space: orientation, convex decomposition, clipping, areas and Lambert's form factor.
+
+Batches of convex polygons travel as ``(m, v, 3)`` arrays padded by repeating the last vertex.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def newell_normal(polygon) -> np.ndarray:
+    """Vector along the right-hand normal of closed polygons, of twice their area (Newell's method).
+
+    Parameters
+    ----------
+    polygon : (..., v, 3) array of float
+
+    Returns
+    -------
+    (..., 3) float
+    """
+    p = np.asarray(polygon, float)
+    p = p - p[..., :1, :]
+    return np.cross(p, np.roll(p, -1, axis=-2)).sum(axis=-2)
+
+
+def areas(polygons) -> np.ndarray:
+    """(...) float: areas of planar polygons ``(..., v, 3)`` [m²]."""
+    return 0.5 * np.linalg.norm(newell_normal(polygons), axis=-1)
+
+
+def plane_basis(normal) -> np.ndarray:
+    """Two unit vectors that span the plane of a normal, right-handed with it.
+
+    Axis-parallel planes get axis-parallel vectors, so that grids align with rooms.
+
+    Parameters
+    ----------
+    normal : (3,) float, unit
+
+    Returns
+    -------
+    (2, 3) float
+    """
+    n = np.asarray(normal, float)
+    helper = np.eye(3)[2] if abs(n[2]) < 0.9 else np.eye(3)[0]
+    first = np.cross(helper, n) if abs(n[2]) < 0.9 else helper - n * n[0]
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(n, first)])
+
+
+def simplify(loop, tolerance: float) -> np.ndarray:
+    """Drop repeated and collinear vertices of a closed 2-D loop ``(v, 2)``."""
+    p = np.asarray(loop, float)
+    changed = True
+    while changed and len(p) > 2:
+        before, after = np.roll(p, 1, axis=0), np.roll(p, -1, axis=0)
+        a, b = p - before, after - p
+        length_a, length_b = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
+        cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        chord = np.linalg.norm(after - before, axis=1)
+        straight = (np.abs(cross) <= tolerance * np.maximum(chord, tolerance)) & ((a * b).sum(axis=1) >= 0)
+        drop = (length_a <= tolerance) | straight
+        if not drop.any():
+            changed = False
+        else:  # never two neighbours in one pass: each judges the other's place
+            keep = ~drop
+            keep |= np.roll(drop, 1) & drop
+            if keep.all():
+                keep[np.argmax(drop)] = False
+            p = p[keep]
+    return p
+
+
+def crosses_itself(loop) -> bool:
+    """Whether two edges of a closed 2-D loop ``(v, 2)`` cross properly (touching is allowed)."""
+    p = np.asarray(loop, float)
+    n = len(p)
+    if n < 4:
+        return False
+    a, b = p, np.roll(p, -1, axis=0)
+    scale = np.ptp(p, axis=0).max() ** 2 * 1e-12
+
+    def side(origin, tip, point):
+        return (tip[..., 0] - origin[..., 0]) * (point[..., 1] - origin[..., 1]) - (tip[..., 1] - origin[..., 1]) * (
+            point[..., 0] - origin[..., 0]
+        )
+
+    for i in range(n - 2):
+        c, d = a[i + 2 :], b[i + 2 :]
+        if i == 0:
+            c, d = c[:-1], d[:-1]
+        if not len(c):
+            continue
+        s1, s2 = side(a[i], b[i], c), side(a[i], b[i], d)
+        s3, s4 = side(c, d, a[i][None]), side(c, d, b[i][None])
+        if np.any((np.minimum(s1, s2) < -scale) & (np.maximum(s1, s2) > scale) & (np.minimum(s3, s4) < -scale) & (np.maximum(s3, s4) > scale)):
+            return True
+    return False
+
+
+def is_convex(loop, tolerance: float) -> bool:
+    """Whether a counter-clockwise 2-D loop ``(v, 2)`` is convex."""
+    p = np.asarray(loop, float)
+    a = np.roll(p, -1, axis=0) - p
+    b = np.roll(a, -1, axis=0)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    if np.any(cross < -tolerance * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1))):
+        return False
+    turn = np.arctan2(cross, (a * b).sum(axis=1)).sum()
+    return turn < 2 * np.pi * 1.5
+
+
+def triangulate(loop) -> np.ndarray:
+    """Triangles of a simple counter-clockwise 2-D loop, by ear clipping.
+
+    Bridged holes (an edge walked both ways) are welcome.
+
+    Parameters
+    ----------
+    loop : (v, 2) array of float
+
+    Returns
+    -------
+    (t, 3) int, indices into the loop
+    """
+    p = np.asarray(loop, float)
+    rest = list(range(len(p)))
+    scale = max(np.ptp(p, axis=0).max(), 1e-300)
+    tiny = 1e-14 * scale * scale
+    triangles = []
+    while len(rest) > 3:
+        ids = np.array(rest)
+        prev, here, nxt = p[np.roll(ids, 1)], p[ids], p[np.roll(ids, -1)]
+        turn = _cross(here - prev, nxt - here)
+        reflex = here[turn <= tiny]
+        best, best_quality = None, -np.inf
+        for k in range(len(ids)):
+            if turn[k] <= tiny:
+                continue
+            a, b, c = prev[k], here[k], nxt[k]
+            if len(reflex):
+                inside = (
+                    (_cross(b - a, reflex - a) >= -tiny) & (_cross(c - b, reflex - b) >= -tiny) & (_cross(a - c, reflex - c) >= -tiny)
+                )
+                corner = ((reflex == a) | (reflex == c) | (reflex == b)).all(axis=1)
+                if np.any(inside & ~corner):
+                    continue
+            quality = turn[k] / max(((c - a) ** 2).sum(), 1e-300)
+            if quality > best_quality:
+                best, best_quality = k, quality
+        if best is None:  # only collinear or doubled vertices are left to turn on
+            best = int(np.argmin(np.abs(turn)))
+        m = len(rest)
+        triangles.append((rest[best - 1], rest[best], rest[(best + 1) % m]))
+        del rest[best]
+    triangles.append(tuple(rest))
+    t = np.array(triangles)
+    area = _cross(p[t[:, 1]] - p[t[:, 0]], p[t[:, 2]] - p[t[:, 0]])
+    return t[area > tiny]
+
+
+def convex_parts(loop, tolerance: float) -> list[np.ndarray]:
+    """Convex polygons that make up a simple counter-clockwise 2-D loop (Hertel & Mehlhorn 1983: merged triangles).
+
+    Parameters
+    ----------
+    loop : (v, 2) array of float
+    tolerance : float
+        Length below which corners count as straight [m].
+
+    Returns
+    -------
+    list of (k, 2) float arrays, counter-clockwise
+    """
+    p = np.asarray(loop, float)
+    if is_convex(p, tolerance):
+        return [p]
+    parts = [list(t) for t in triangulate(p)]
+    merged = True
+    while merged:
+        merged = False
+        edges = {}
+        for k, part in enumerate(parts):
+            for i in range(len(part)):
+                edges[(part[i], part[(i + 1) % len(part)])] = (k, i)
+        for (a, b), (k, i) in edges.items():
+            if (b, a) not in edges:
+                continue
+            other, j = edges[(b, a)]
+            if other == k:
+                continue
+            one, two = parts[k], parts[other]
+            joined = [one[(i + 1 + s) % len(one)] for s in range(len(one))] + [two[(j + 2 + s) % len(two)] for s in range(len(two) - 2)]
+            if is_convex(p[joined], tolerance):
+                parts = [q for m, q in enumerate(parts) if m not in (k, other)] + [joined]
+                merged = True
+                break
+    return [simplify(p[part], tolerance) for part in parts]
+
+
+def pad(polygons: list[np.ndarray], width: int | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Stack polygons of different length by repeating their last vertex.
+
+    Returns
+    -------
+    vertices : (m, v, 3) float
+    counts : (m,) int
+    """
+    counts = np.array([len(p) for p in polygons], dtype=np.int64)
+    width = width or (int(counts.max()) if len(counts) else 3)
+    out = np.zeros((len(polygons), width, 3))
+    for row, p in zip(out, polygons, strict=True):
+        row[: len(p)] = p
+        row[len(p) :] = p[-1]
+    return out, counts
+
+
+def clip(polygons, normal, offset=0.0) -> np.ndarray:
+    """Part of each convex polygon with ``normal · x ≥ offset`` (Sutherland & Hodgman 1974).
+
+    Parameters
+    ----------
+    polygons : (m, v, 3) array of float, padded
+    normal : (3,) or (m, 3) array of float
+    offset : float or (m,) array
+
+    Returns
+    -------
+    (m, w, 3) float, padded; an empty part is one point repeated, of area 0
+    """
+    p = np.asarray(polygons, float)
+    m, v = p.shape[:2]
+    if m == 0:
+        return p
+    n = np.broadcast_to(np.asarray(normal, float), (m, 3))
+    s = np.einsum("mvc,mc->mv", p, n) - np.broadcast_to(np.asarray(offset, float), (m,))[:, None]
+    inside = s >= 0
+    if inside.all():
+        return p
+    nxt, s_next = np.roll(p, -1, axis=1), np.roll(s, -1, axis=1)
+    crossing = inside != (s_next >= 0)
+    gap = np.where(crossing, s - s_next, 1.0)
+    cut = p + (nxt - p) * (s / gap)[:, :, None]
+    slots = np.empty((m, 2 * v, 3))
+    slots[:, 0::2], slots[:, 1::2] = p, cut
+    used = np.empty((m, 2 * v), bool)
+    used[:, 0::2], used[:, 1::2] = inside, crossing
+    counts = used.sum(axis=1)
+    width = max(int(counts.max()), 1)
+    order = np.argsort(~used, axis=1, kind="stable")[:, :width]
+    place = np.minimum(np.arange(width)[None], np.maximum(counts - 1, 0)[:, None])
+    order = np.take_along_axis(order, place, axis=1)
+    return np.take_along_axis(slots, order[:, :, None], axis=1)
+
+
+def lambert_form_factor(polygons, normal) -> np.ndarray:
+    """Form factor from a surface element at the origin to polygons wholly above its horizon.
+
+    Lambert's contour formula, F = 1/(2π) Σ β_e (n · γ_e) (Lambert 1760; e.g. Howell, C-1), positive for polygons that run
+    clockwise as the element sees them, that is whose right-hand normal looks at it.
+
+    Parameters
+    ----------
+    polygons : (m, v, 3) array of float, padded, relative to the element
+    normal : (3,) or (m, 3) array of float, unit
+
+    Returns
+    -------
+    (m,) float
+    """
+    p = np.asarray(polygons, float)
+    if not len(p):
+        return np.zeros(0)
+    q = np.roll(p, -1, axis=1)
+    cross = np.cross(p, q)
+    length = np.linalg.norm(cross, axis=2)
+    angle = np.arctan2(length, np.einsum("mvc,mvc->mv", p, q))
+    along = np.einsum("mvc,mc->mv", cross, np.broadcast_to(np.asarray(normal, float), (len(p), 3)))
+    ratio = np.divide(angle, length, out=np.zeros_like(angle), where=length > 0)
+    return -(along * ratio).sum(axis=1) / (2 * np.pi)
+
+
+def _cross(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -1,0 +1,195 @@
+"""Projection of planes on the globe: which share of a parcel lies on one side of an edge's great circle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import polygons
+from .globe import Hemisphere
+
+
+@dataclass(frozen=True, eq=False)
+class Beams:
+    """Parcels as beams that leave every receiver of a group alike.
+
+    Attributes
+    ----------
+    directions : (k, 3) float, unit
+    axes : (k, 2, 3) float, unit vectors across each beam
+    half_widths : (k, 2) float [rad]
+    columns : (k,) int
+        Index of each beam in the hemisphere that it began in.
+    """
+
+    directions: np.ndarray
+    axes: np.ndarray
+    half_widths: np.ndarray
+    columns: np.ndarray
+
+    @classmethod
+    def of(cls, hemisphere: Hemisphere) -> Beams:
+        """All beams of a hemisphere."""
+        return cls(hemisphere.directions, hemisphere.axes, hemisphere.half_widths, np.arange(len(hemisphere.directions)))
+
+    def take(self, index) -> Beams:
+        """Some of the beams."""
+        return Beams(self.directions[index], self.axes[index], self.half_widths[index], self.columns[index])
+
+    def reflected(self, normal) -> Beams:
+        """The beams as a mirror of this unit normal throws them."""
+        return Beams(reflect(self.directions, normal), reflect(self.axes, normal), self.half_widths, self.columns)
+
+    @property
+    def reach(self) -> np.ndarray:
+        """(k,) float: no part of a beam is farther than this from its centre [rad]."""
+        return np.hypot(self.half_widths[:, 0], self.half_widths[:, 1])
+
+
+def reflect(vectors, normal) -> np.ndarray:
+    """Mirror images of free vectors ``(..., 3)`` in a plane through the origin of unit ``normal``."""
+    v = np.asarray(vectors, float)
+    n = np.asarray(normal, float)
+    return v - 2 * (v @ n)[..., None] * n
+
+
+def reflect_points(points, normal, offset: float) -> np.ndarray:
+    """Mirror images of points ``(..., 3)`` in the plane ``normal · x = offset``."""
+    p = np.asarray(points, float)
+    n = np.asarray(normal, float)
+    return p - 2 * (p @ n - offset)[..., None] * n
+
+
+@dataclass(frozen=True, eq=False)
+class HalfSpace:
+    """Points with ``normal · x > offset``: what lies above a receiver's horizon or beyond a mirror."""
+
+    normal: np.ndarray
+    offset: float
+
+    def reflected(self, normal, offset: float) -> HalfSpace:
+        """The half-space's image in a mirror."""
+        turned = reflect(self.normal, normal)
+        origin = reflect_points(np.asarray(self.normal) * self.offset, normal, offset)
+        return HalfSpace(turned, float(turned @ origin))
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacles:
+    """Convex outlines cut to what can be seen, with the edges that bound them there.
+
+    An edge that lies on a cutting plane bounds nothing that a beam above that plane could reach, so it is left out: a
+    wall that stands on a receiver's own plane covers the parcels along the horizon wholly.
+
+    Attributes
+    ----------
+    outlines : (o,) int
+        Index of each obstacle's outline among the scene's.
+    vertices : (o, w, 3) float, padded
+    bounding : (o, w) bool
+        Whether the edge from vertex i to i + 1 bounds the obstacle.
+    normals : (o, 3) float
+    offsets : (o,) float
+    """
+
+    outlines: np.ndarray
+    vertices: np.ndarray
+    bounding: np.ndarray
+    normals: np.ndarray
+    offsets: np.ndarray
+
+
+def obstacles_within(outlines, normals, offsets, half_spaces: list[HalfSpace], tolerance: float) -> Obstacles:
+    """Cut outlines to half-spaces.
+
+    Parameters
+    ----------
+    outlines : (o, w, 3) float, padded convex polygons
+    normals : (o, 3) float
+    offsets : (o,) float
+    half_spaces : list of HalfSpace
+    tolerance : float
+        Length below which a point counts as lying on a plane [m].
+
+    Returns
+    -------
+    Obstacles
+    """
+    index = np.arange(len(outlines))
+    vertices = outlines
+    for half in half_spaces:
+        height = vertices @ half.normal - half.offset
+        keep = (height > tolerance).any(axis=1)
+        index, vertices, height = index[keep], vertices[keep], height[keep]
+        below = (height < -tolerance).any(axis=1)
+        if below.any():
+            cut = polygons.clip(vertices[below], half.normal, half.offset)
+            width = max(cut.shape[1], vertices.shape[1])
+            widened = np.concatenate([vertices, np.repeat(vertices[:, -1:], width - vertices.shape[1], axis=1)], axis=1)
+            widened[below] = np.concatenate([cut, np.repeat(cut[:, -1:], width - cut.shape[1], axis=1)], axis=1)
+            vertices = widened
+    following = np.roll(vertices, -1, axis=1)
+    bounding = np.linalg.norm(following - vertices, axis=2) > 1e-3 * tolerance
+    for half in half_spaces:
+        low = vertices @ half.normal - half.offset <= tolerance
+        bounding &= ~(low & np.roll(low, -1, axis=1))
+    return Obstacles(index, vertices, bounding, normals[index], offsets[index])
+
+
+def edge_planes(points, obstacles: Obstacles, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Unit normals of the planes through each point and each edge, positive inside the obstacle as seen from the point.
+
+    Parameters
+    ----------
+    points : (r, 3) float
+    obstacles : Obstacles
+    tolerance : float [m]
+
+    Returns
+    -------
+    planes : (r, o, w, 3) float
+        For edges that bound nothing the zero vector.
+    heights : (r, o) float
+        Signed distance along the obstacle's normal from the point to its plane; 0 where the point lies in it.
+    """
+    p = np.asarray(points, float)
+    relative = obstacles.vertices[None] - p[:, None, None]
+    planes = np.cross(relative, np.roll(relative, -1, axis=2))
+    length = np.linalg.norm(planes, axis=3, keepdims=True)
+    heights = obstacles.offsets[None] - p @ obstacles.normals.T
+    heights[np.abs(heights) <= tolerance] = 0.0
+    # seen from the front (height < 0) a right-handed outline runs so that its inside is on the negative side
+    sign = np.sign(heights)[:, :, None, None]
+    usable = (length > 0) & obstacles.bounding[None, :, :, None]
+    return np.where(usable, planes * sign / np.where(length > 0, length, 1.0), 0.0), heights
+
+
+def coverage(distance, width_a, width_b) -> tuple[np.ndarray, np.ndarray]:
+    """Share of a rectangle on the positive side of a line, and where its centre lies.
+
+    The rectangle projects on the line's normal as the convolution of two boxes, so the share is a difference of squared ramps:
+    exact for a straight edge.
+
+    Parameters
+    ----------
+    distance : (n,) float
+        Signed distance from the line to the rectangle's centre, positive inside.
+    width_a, width_b : (n,) float
+        Full widths of the two boxes: the rectangle's sides projected on the line's normal.
+
+    Returns
+    -------
+    share : (n,) float, 0 to 1
+    moment : (n,) float
+        Share times the distance of its centroid from the rectangle's centre, along the line's normal.
+    """
+    floor = 1e-4 * (width_a + width_b)
+    p, q = np.maximum(width_a, floor), np.maximum(width_b, floor)
+    alpha, beta = 0.5 * (p + q), 0.5 * np.abs(p - q)
+    s = np.clip(distance, -alpha, alpha)
+    ramps = [np.maximum(s + alpha, 0), np.maximum(s + beta, 0), np.maximum(s - beta, 0)]
+    second = (ramps[0] ** 2 - ramps[1] ** 2 - ramps[2] ** 2) / (2 * p * q)
+    third = (ramps[0] ** 3 - ramps[1] ** 3 - ramps[2] ** 3) / (6 * p * q)
+    share = np.clip(second, 0.0, 1.0)
+    return share, third - s * second

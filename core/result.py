@@ -1,0 +1,252 @@
+"""Result: illuminance per face and at free points, its components, and the lumen balance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .balance import Balance, lumen_balance
+from .errors import SceneError
+from .gather import gather
+from .projection import HalfSpace
+from .sources import gather_sources
+from .specular import GroupSight
+from .stages import Stage
+from .sunlight import Sunlight, light_points
+
+if TYPE_CHECKING:
+    from .daylight import Daylight
+    from .solve import Field
+    from .transfer import Transfer
+
+INITIAL = ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted")
+"""Components of the light that has met no diffuse surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """Values on one side of the faces, all of length n.
+
+    Attributes
+    ----------
+    illuminance, initial, exitance : (n,) float
+        [lx], [lx], [lm/m²]; NaN where that side is no receiver.
+    components : dict of str to (n,) float [lx]
+    centroids, normals : (n, 3) float
+    areas : (n,) float [m²]
+    """
+
+    illuminance: np.ndarray
+    initial: np.ndarray
+    exitance: np.ndarray
+    components: dict[str, np.ndarray]
+    centroids: np.ndarray
+    normals: np.ndarray
+    areas: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """Light on a scene for one sky and Sun; made by `Transfer.solve`.
+
+    Attributes
+    ----------
+    transfer : Transfer
+    light : Daylight
+    sky : (c,) float
+        Luminance of the sky parcels, and last of the ground [cd/m²].
+    sunlight : Sunlight
+    field : Field
+    front : Side
+    back : Side or None
+        The same for the backs of two-sided surfaces (NaN elsewhere); None where there are none.
+    stages : tuple of Stage
+        What ran, what was skipped and why, seconds each; preparation first.
+    """
+
+    transfer: Transfer
+    light: Daylight
+    sky: np.ndarray
+    sunlight: Sunlight
+    field: Field
+    front: Side
+    back: Side | None
+    stages: tuple[Stage, ...]
+
+    @classmethod
+    def of(cls, transfer: Transfer, light: Daylight, sky, sunlight: Sunlight, field: Field, stages) -> Result:
+        """Take element values together to faces."""
+        cuts, planes = transfer.geometry.fracture, transfer.geometry.planes
+        faces = len(cuts.faces)
+        means = {name: cuts.side_means(values) for name, values in field.components.items()}
+        total = sum(means.values())
+        if not np.isfinite(total).all():
+            worst = int(np.flatnonzero(~np.isfinite(total))[0])
+            surface = planes.surfaces[cuts.face_surface[worst if worst < faces else cuts.back_of[worst - faces]]]
+            raise ArithmeticError(f"Illuminance on '{surface}' is not finite; please report this scene")
+        materials = transfer.geometry.surface_materials
+        reflectance = np.array([m.diffuse_reflectance for m in materials])[cuts.face_surface]
+        emitted = np.array([m.exitance for m in materials])[cuts.face_surface]
+        centroids = cuts.faces.mean(axis=1) + planes.centre
+
+        def side(parts: dict[str, np.ndarray], normals: np.ndarray) -> Side:
+            illuminance = sum(parts.values())
+            initial = sum(parts[name] for name in INITIAL)
+            return Side(illuminance, initial, emitted + reflectance * illuminance, parts, centroids, normals, cuts.face_areas)
+
+        front = side({name: values[:faces] for name, values in means.items()}, cuts.face_normals)
+        back = None
+        if len(cuts.back_of):
+            parts = {}
+            for name, values in means.items():
+                parts[name] = np.full(faces, np.nan)
+                parts[name][cuts.back_of] = values[faces:]
+            back = side(parts, -cuts.face_normals)
+        return cls(transfer, light, sky, sunlight, field, front, back, (*transfer.stages, *stages))
+
+    @property
+    def illuminance(self) -> np.ndarray:
+        """(n,) float: illuminance per face, all light [lx]."""
+        return self.front.illuminance
+
+    @property
+    def initial(self) -> np.ndarray:
+        """(n,) float: illuminance before any diffuse reflection [lx]."""
+        return self.front.initial
+
+    @property
+    def components(self) -> dict[str, np.ndarray]:
+        """Illuminance by origin, each (n,) [lx]: they add up to `illuminance`."""
+        return self.front.components
+
+    @property
+    def centroids(self) -> np.ndarray:
+        """(n, 3) float [m]."""
+        return self.front.centroids
+
+    @property
+    def normals(self) -> np.ndarray:
+        """(n, 3) float, unit."""
+        return self.front.normals
+
+    @property
+    def areas(self) -> np.ndarray:
+        """(n,) float [m²]."""
+        return self.front.areas
+
+    @property
+    def exitance(self) -> np.ndarray:
+        """(n,) float: diffuse luminous exitance M₀ + ρ_d·E [lm/m²]."""
+        return self.front.exitance
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """(n, 3, 3) float: corners of the faces [m]."""
+        return self.transfer.geometry.fracture.faces + self.transfer.geometry.planes.centre
+
+    @property
+    def source_faces(self) -> np.ndarray:
+        """(n,) int: for each face the index of the face given to `Scene.add` that it is a part of."""
+        return self.transfer.geometry.fracture.face_source
+
+    @property
+    def surfaces(self) -> list[str]:
+        """Names of the surfaces."""
+        return list(self.transfer.geometry.planes.surfaces)
+
+    def faces_of(self, name: str) -> np.ndarray:
+        """(k,) int: faces of a surface.
+
+        Raises
+        ------
+        SceneError
+            Where no surface has this name.
+        """
+        surfaces = self.transfer.geometry.planes.surfaces
+        if name not in surfaces:
+            raise SceneError(f"There is no surface '{name}' in this result; its surfaces are: {', '.join(surfaces[:20])}")
+        return np.flatnonzero(self.transfer.geometry.fracture.face_surface == surfaces.index(name))
+
+    def mean(self, name: str) -> float:
+        """Area-weighted mean illuminance of a surface's front [lx]; `SceneError` for an unknown name."""
+        faces = self.faces_of(name)
+        return float(np.average(self.illuminance[faces], weights=self.areas[faces]))
+
+    def at(self, points, normals, initial: bool = False) -> np.ndarray:
+        """Illuminance at free points, gathered at the points themselves.
+
+        Parameters
+        ----------
+        points, normals : (m, 3) array of float
+            Normals of any length but zero; each point receives what lies above its plane. Surfaces through the point block nothing.
+        initial : bool
+            Leave out light that has met a diffuse surface.
+
+        Returns
+        -------
+        (m,) float [lx]
+
+        Raises
+        ------
+        SceneError
+            Where shapes differ, or a value is not finite, or a normal is zero.
+        """
+        place, normal = _checked_points(points, normals)
+        geometry, transfer = self.transfer.geometry, self.transfer
+        place = place - geometry.planes.centre
+        out = np.zeros(len(place))
+        direct, specular = light_points(geometry.outlines, self.sunlight.beams, place, normal)
+        out += direct + specular
+        exitance = self.field.patch_emitted + (0.0 if initial else self.field.patch_exitance)
+        sources = self.field.sources[: self.field.emitters] if initial else self.field.sources
+        for rows in _coplanar(place, normal, geometry.outlines.tolerance):
+            n = normal[rows[0]]
+            sight = GroupSight(
+                geometry.outlines, geometry.targets.globe.hemisphere(n), HalfSpace(n, float(n @ place[rows[0]])).offset, transfer.limits
+            )
+            for start in range(0, len(rows), 64):
+                some = rows[start : start + 64]
+                seen = gather(sight, place[some], geometry.targets)
+                sky = seen.sky_direct if seen.sky_specular is None else seen.sky_direct + seen.sky_specular
+                out[some] += np.pi * (sky @ self.sky) + seen.patches @ exitance
+                out[some] += gather_sources(geometry.outlines, sources, place[some], n, transfer.limits.cutoff)
+        return out
+
+    @cached_property
+    def balance(self) -> Balance:
+        """Lumens: entering, absorbed per surface, escaped, truncated, and the relative defect."""
+        return lumen_balance(self)
+
+
+def _checked_points(points, normals) -> tuple[np.ndarray, np.ndarray]:
+    try:
+        place, normal = np.array(points, float), np.array(normals, float)
+    except (TypeError, ValueError):
+        raise SceneError("at(points, normals): both must be (m, 3) arrays of numbers") from None
+    if place.ndim == 1 and place.shape == (0,):
+        return np.zeros((0, 3)), np.zeros((0, 3))
+    if place.ndim != 2 or place.shape[1] != 3 or normal.shape != place.shape:
+        raise SceneError(f"at(points, normals): both must be of shape (m, 3), not {place.shape} and {normal.shape}")
+    length = np.linalg.norm(normal, axis=1)
+    bad = np.flatnonzero(~np.isfinite(place).all(axis=1) | ~np.isfinite(length) | (length == 0))
+    if len(bad):
+        raise SceneError(
+            f"at(points, normals): point {bad[0]} is {place[bad[0]].tolist()} with normal {normal[bad[0]].tolist()}; "
+            "points must be finite, normals finite and not zero"
+        )
+    return place, normal / length[:, None]
+
+
+def _coplanar(points: np.ndarray, normals: np.ndarray, tolerance: float) -> list[np.ndarray]:
+    """Rows of points that share a plane."""
+    if not len(points):
+        return []
+    height = np.einsum("mc,mc->m", points, normals)
+    key = np.concatenate([np.rint(normals / 1e-9), np.rint(height / max(tolerance, 1e-300))[:, None]], axis=1)
+    _, group = np.unique(key, axis=0, return_inverse=True)
+    group = group.reshape(-1)
+    order = np.argsort(group, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(group[order])) + 1)

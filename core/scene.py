@@ -1,0 +1,234 @@
+"""Scene: named surfaces with materials, checked when they are added."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import polygons
+from .errors import SceneError
+from .materials import Material
+
+logger = logging.getLogger(__name__)
+
+PLANARITY = 1e-5
+"""Largest departure of a vertex from its face's plane, relative to the face's size, that still counts as flat."""
+
+_LARGEST_COORDINATE = 1e100
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A named set of planar convex pieces of one material.
+
+    Attributes
+    ----------
+    name : str
+    material : Material
+    two_sided : bool
+        Whether the back receives, reflects and emits as well.
+    pieces : (m, v, 3) float
+        Convex polygons, padded by their last vertex, right-handed about their normal [m].
+    counts : (m,) int
+        Vertices of each piece.
+    source_faces : (m,) int
+        Index of the given face that each piece is a part of.
+    notes : tuple of str
+        What was mended on the way in.
+    """
+
+    name: str
+    material: Material
+    two_sided: bool
+    pieces: np.ndarray
+    counts: np.ndarray
+    source_faces: np.ndarray
+    notes: tuple[str, ...] = ()
+
+
+@dataclass
+class Scene:
+    """Surfaces by name. A scene may grow; a transfer holds what it was prepared with."""
+
+    surfaces: dict[str, Surface] = field(default_factory=dict)
+
+    def add(
+        self,
+        name: str,
+        vertices,
+        material: Material,
+        *,
+        faces: np.ndarray | Sequence[Sequence[int]] | None = None,
+        two_sided: bool = False,
+    ) -> Surface:
+        """Add a surface: one planar polygon, or a mesh.
+
+        Parameters
+        ----------
+        name : str
+            Unique in the scene.
+        vertices : (n, 3) array of float
+            Corners of one planar polygon, convex or not, counter-clockwise as seen from its lit side; or, with ``faces``, the
+            vertices of a mesh [m].
+        material : Material
+        faces : (f, 3) or (f, 4) array of int, or list of lists of int, optional
+            Faces of a mesh by index into ``vertices``. Faces that are not flat are cut into triangles.
+        two_sided : bool
+            Let each side receive, reflect and emit by itself.
+
+        Returns
+        -------
+        Surface
+
+        Raises
+        ------
+        SceneError
+            Where a name is taken, a coordinate is not finite, or a polygon has no area, is not flat or crosses itself.
+        """
+        if not isinstance(name, str) or not name.strip():
+            raise SceneError(f"A surface needs a name of at least one letter, not {name!r}")
+        if name in self.surfaces:
+            raise SceneError(f"Surface '{name}' is in the scene already; give each surface a name of its own")
+        if not isinstance(material, Material):
+            raise SceneError(f"Surface '{name}': material must be a luzespecular.Material, not {type(material).__name__}")
+        points = _vertices(name, vertices, faces is not None)
+        if faces is None:
+            pieces, counts, source, notes = _polygon_pieces(name, points)
+        else:
+            pieces, counts, source, notes = _mesh_pieces(name, points, faces)
+        for note in notes:
+            logger.warning("Surface '%s': %s", name, note)
+        surface = Surface(name, material, bool(two_sided), pieces, counts, source, tuple(notes))
+        self.surfaces[name] = surface
+        return surface
+
+
+def _vertices(name: str, vertices, mesh: bool) -> np.ndarray:
+    try:
+        points = np.array(vertices, dtype=float)
+    except (TypeError, ValueError):
+        raise SceneError(f"Surface '{name}': vertices must be an (n, 3) array of numbers") from None
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise SceneError(f"Surface '{name}': vertices must be an (n, 3) array, not of shape {points.shape}")
+    if len(points) < 3:
+        raise SceneError(f"Surface '{name}' has {len(points)} vertices; a {'mesh' if mesh else 'polygon'} needs at least 3")
+    bad = np.flatnonzero(~(np.abs(points) < _LARGEST_COORDINATE).all(axis=1))
+    if len(bad):
+        raise SceneError(f"Surface '{name}': vertex {bad[0]} is {points[bad[0]].tolist()}; mend or remove it ({len(bad)} in all)")
+    return points
+
+
+def _polygon_pieces(name: str, points: np.ndarray):
+    normal = polygons.newell_normal(points)
+    size = np.ptp(points, axis=0).max()
+    twice_area = np.linalg.norm(normal)
+    loop3 = points - points.mean(axis=0)
+    if size > 0 and twice_area > 0:
+        unit = normal / twice_area
+        off = np.abs(loop3 @ unit).max()
+        basis = polygons.plane_basis(unit)
+        loop = loop3 @ basis.T
+        if polygons.crosses_itself(loop):
+            raise SceneError(f"Surface '{name}': the polygon's edges cross each other; split it or reorder its vertices")
+        if off > PLANARITY * size:
+            raise SceneError(
+                f"Surface '{name}' is not flat: a vertex lies {off:.3g} m off its plane; move it, or add the surface as a mesh of triangles"
+            )
+    if size == 0 or twice_area <= 1e-14 * size**2:
+        raise SceneError(f"Surface '{name}' has no area: its vertices repeat or lie on one line; mend or remove it")
+    return _flat_pieces(points, unit)
+
+
+def _flat_pieces(points: np.ndarray, unit: np.ndarray):
+    """Convex pieces of one flat simple polygon, keeping its own vertices to the last bit."""
+    basis = polygons.plane_basis(unit)
+    tolerance = 1e-9 * np.ptp(points, axis=0).max()
+    origin = points.mean(axis=0)
+    parts = polygons.convex_parts((points - origin) @ basis.T, tolerance)
+    lifted = [part @ basis + origin for part in parts]
+    for part in lifted:
+        for i, corner in enumerate(part):
+            distance = np.abs(points - corner).max(axis=1)
+            nearest = int(np.argmin(distance))
+            if distance[nearest] <= 1e-6 * np.ptp(points, axis=0).max():
+                part[i] = points[nearest]
+    pieces, counts = polygons.pad(lifted)
+    return pieces, counts, np.zeros(len(lifted), np.int64), []
+
+
+def _mesh_pieces(name: str, points: np.ndarray, faces):
+    loops_by_length = _faces_by_length(name, faces, len(points))
+    pieces, counts, source, notes = [], [], [], []
+    dropped = bent = 0
+    for length, (rows, index) in sorted(loops_by_length.items()):
+        corners = points[index]
+        normals = polygons.newell_normal(corners)
+        size = np.ptp(corners, axis=1).max(axis=1)
+        twice_area = np.linalg.norm(normals, axis=1)
+        sound = twice_area > 1e-14 * np.maximum(size, 1e-300) ** 2
+        dropped += int((~sound).sum())
+        rows, corners, size = rows[sound], corners[sound], size[sound]
+        if not len(rows):
+            continue
+        unit = normals[sound] / twice_area[sound][:, None]
+        if length == 3:
+            pieces.append(corners)
+            counts.append(np.full(len(rows), 3))
+            source.append(rows)
+            continue
+        off = np.abs(np.einsum("fvc,fc->fv", corners - corners.mean(axis=1, keepdims=True), unit)).max(axis=1)
+        flat = off <= PLANARITY * size
+        edge = np.roll(corners, -1, axis=1) - corners
+        turn = np.einsum("fvc,fc->fv", np.cross(edge, np.roll(edge, -1, axis=1)), unit)
+        convex = flat & (turn > -1e-9 * size[:, None] ** 2).all(axis=1) & (length < 5 or _turns_once(edge, unit))
+        pieces.append(corners[convex])
+        counts.append(np.full(int(convex.sum()), length))
+        source.append(rows[convex])
+        bent += int((~flat).sum())
+        for row, polygon, normal in zip(rows[~convex], corners[~convex], unit[~convex], strict=True):
+            triangles = polygon[polygons.triangulate((polygon - polygon[0]) @ polygons.plane_basis(normal).T)]
+            pieces.append(triangles)
+            counts.append(np.full(len(triangles), 3))
+            source.append(np.full(len(triangles), row))
+    if dropped:
+        notes.append(f"{dropped} faces without area left out")
+    if bent:
+        notes.append(f"{bent} faces that are not flat cut into triangles")
+    total = sum(len(p) for p in pieces)
+    if not total:
+        raise SceneError(f"Surface '{name}' has no face with an area; mend or remove it")
+    width = max(p.shape[1] for p in pieces if len(p))
+    padded = [np.concatenate([p, np.repeat(p[:, -1:], width - p.shape[1], axis=1)], axis=1) for p in pieces if len(p)]
+    return np.concatenate(padded), np.concatenate(counts), np.concatenate(source), notes
+
+
+def _turns_once(edge: np.ndarray, unit: np.ndarray) -> np.ndarray:
+    nxt = np.roll(edge, -1, axis=1)
+    angle = np.arctan2(np.einsum("fvc,fc->fv", np.cross(edge, nxt), unit), np.einsum("fvc,fvc->fv", edge, nxt)).sum(axis=1)
+    return angle < 3 * np.pi
+
+
+def _faces_by_length(name: str, faces, vertex_count: int) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    if isinstance(faces, np.ndarray) and faces.ndim == 2:
+        groups = {faces.shape[1]: (np.arange(len(faces)), faces)}
+    else:
+        by_length: dict[int, tuple[list, list]] = {}
+        for row, face in enumerate(faces):
+            rows, index = by_length.setdefault(len(face), ([], []))
+            rows.append(row)
+            index.append(list(face))
+        groups = {length: (np.array(rows), np.array(index)) for length, (rows, index) in by_length.items()}
+    if not groups or not any(len(rows) for rows, _ in groups.values()):
+        raise SceneError(f"Surface '{name}' has no faces; remove it, or leave out 'faces' to add one polygon")
+    for length, (rows, index) in groups.items():
+        if length < 3:
+            raise SceneError(f"Surface '{name}': face {rows[0]} has {length} vertices; a face needs at least 3")
+        if index.dtype.kind not in "iu":
+            raise SceneError(f"Surface '{name}': faces must hold whole numbers, not {index.dtype}")
+        bad = np.flatnonzero(((index < 0) | (index >= vertex_count)).any(axis=1))
+        if len(bad):
+            raise SceneError(f"Surface '{name}': face {rows[bad[0]]} names a vertex outside 0 … {vertex_count - 1}; mend the face")
+    return groups

@@ -1,0 +1,217 @@
+"""One sky and Sun on a prepared transfer: initial illuminance, interreflection, and what the light added up to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import radiosity
+from .daylight import Daylight
+from .errors import SceneError
+from .result import Result
+from .sources import Source, gather_sources
+from .stages import Progress, Recorder
+from .sunlight import NO_SUNLIGHT, Sunlight, light_elements, trace_sun
+from .transfer import Geometry, Transfer, run_parallel
+
+EXACT_OUTLINES = 400
+"""Scenes of more outlines gather luminous surfaces and sun patches by the globe, like all other light."""
+
+_SKY_SUBDIVISION = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """Light on the elements, by origin.
+
+    Attributes
+    ----------
+    components : dict of str to (e,) float [lx]
+    patch_exitance : (p,) float
+        Reflected light that the globe gathers: all but the bright few [lm/m²].
+    patch_emitted : (p,) float
+        Emitted light that the globe gathers [lm/m²]; 0 where ``sources`` hold it.
+    sources : list of Source
+        The bright few: luminous surfaces, and sun patches as diffuse emitters.
+    emitters : int
+        How many of ``sources`` are luminous surfaces; the rest are sun patches.
+    """
+
+    components: dict[str, np.ndarray]
+    patch_exitance: np.ndarray
+    patch_emitted: np.ndarray
+    sources: list[Source]
+    emitters: int
+
+
+def solve_light(transfer: Transfer, light: Daylight, *, tolerance: float, cycles: int | None, progress: Progress | None) -> Result:
+    """See `Transfer.solve`."""
+    _check_options(light, tolerance, cycles)
+    geometry, recorder = transfer.geometry, Recorder(progress)
+    count = len(geometry.element_points)
+    components = {name: np.zeros(count) for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted")}
+
+    sky = sky_column(geometry, light)
+    if sky.any():
+        with recorder.stage("sky", 0.0):
+            components["sky_direct"] = np.pi * (transfer.sky_direct @ sky).astype(float)
+            components["sky_specular"][transfer.specular_rows] = np.pi * (transfer.sky_specular @ sky)
+    else:
+        recorder.skip("sky", "no sky and no ground light")
+
+    sunlight = NO_SUNLIGHT
+    sun = light.sun
+    if sun is None or not sun.is_up or sun.normal_illuminance == 0:
+        recorder.skip("sun", "no Sun" if sun is None else "the Sun is at or below the horizon" if not sun.is_up else "the Sun gives no light")
+    else:
+        with recorder.stage("sun", 0.05):
+            sunlight = trace_sun(
+                geometry.outlines,
+                np.asarray(sun.direction),
+                sun.normal_illuminance,
+                transfer.limits.cutoff,
+                lambda: recorder.report(0.05, "sun"),
+            )
+            for name, specular in (("sun_direct", False), ("sun_specular", True)):
+                components[name] = light_elements(
+                    sunlight.patches,
+                    geometry.fracture.elements,
+                    geometry.fracture.element_sheet,
+                    geometry.planes.outline_sheet,
+                    len(geometry.planes.sheet_surface),
+                    specular,
+                )
+
+    reflectance, emitted = patch_properties(geometry)
+    if geometry.targets.patches.count == 0:
+        recorder.skip("interreflection", "no surface reflects or emits diffusely")
+        components["interreflected"] = np.zeros(count)
+        field = Field(components, np.zeros(0), np.zeros(0), [], 0)
+    else:
+        with recorder.stage("interreflection", 0.1):
+            field = interreflect(transfer, components, sunlight, reflectance, emitted, tolerance, cycles, recorder)
+    recorder.report(1.0, "solved")
+    return Result.of(transfer, light, sky, sunlight, field, recorder.stages)
+
+
+def sky_column(geometry: Geometry, light: Daylight) -> np.ndarray:
+    """(c,) float: mean luminance of each sky parcel, and last the ground's [cd/m²]."""
+    globe, parcels = geometry.targets.globe, geometry.targets.sky_parcels
+    parts = globe.subdirections(np.arange(parcels), _SKY_SUBDIVISION)
+    luminance = light.sky_luminance(parts.reshape(-1, 3)).reshape(parcels, -1).mean(axis=1)
+    return np.append(luminance, light.ground_luminance)
+
+
+def patch_properties(geometry: Geometry) -> tuple[np.ndarray, np.ndarray]:
+    """Diffuse reflectance and emitted exitance of each patch, both (p,) float."""
+    patch, surface = geometry.targets.patches.of_element, geometry.element_surface
+    count = geometry.targets.patches.count
+    reflectance, emitted = np.zeros(count), np.zeros(count)
+    mine = patch >= 0
+    materials = geometry.surface_materials
+    reflectance[patch[mine]] = np.array([m.diffuse_reflectance for m in materials])[surface[mine]]
+    emitted[patch[mine]] = np.array([m.exitance for m in materials])[surface[mine]]
+    return reflectance, emitted
+
+
+def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted, tolerance, cycles, recorder) -> Field:
+    """Add emitted and interreflected light to the components."""
+    geometry = transfer.geometry
+    emitters, sunny = bright_few(geometry, sunlight)
+    sun = components["sun_direct"] + components["sun_specular"]
+    by_globe = np.zeros(len(emitted))
+    if len(geometry.outlines.vertices) > EXACT_OUTLINES:
+        by_globe, emitters, sunny = emitted, [], []
+        components["emitted"] = (transfer.form_factors @ emitted).astype(float)
+    elif emitters:
+        components["emitted"] = _gather_elements(transfer, emitters, recorder)
+    smooth = components["sky_direct"] + components["sky_specular"] + components["emitted"]
+    if not sunny:
+        smooth = smooth + sun
+    if cycles == 0 or not reflectance.any():
+        components["interreflected"] = np.zeros(len(sun))
+        return Field(components, np.zeros(len(reflectance)), by_globe, emitters, len(emitters))
+    first = _gather_elements(transfer, sunny, recorder) if sunny else np.zeros(len(sun))
+    smooth, once = patch_means(geometry, smooth), patch_means(geometry, first)
+
+    def checkpoint() -> None:
+        recorder.report(0.8, "interreflection")
+
+    if cycles is None:
+        settled = radiosity.until_settled(transfer.patch_factors, reflectance, smooth + once, tolerance, checkpoint)
+    else:
+        settled = _cycles_after_first(transfer.patch_factors, reflectance, smooth, once, cycles, checkpoint)
+    exitance = reflectance * settled
+    components["interreflected"] = first + transfer.form_factors @ exitance
+    return Field(components, exitance, by_globe, [*emitters, *sunny], len(emitters))
+
+
+def _cycles_after_first(factors, reflectance, smooth, first, cycles: int, checkpoint) -> np.ndarray:
+    """Patch illuminance whose reflection, one last cycle, makes exactly n cycles of both kinds of light.
+
+    Smooth light needs n − 1 cycles on the patches before its last; light whose first reflection is found already, n − 2.
+    """
+    total = radiosity.by_cycles(factors, reflectance, smooth, cycles - 1, checkpoint)
+    if cycles >= 2:
+        total = total + radiosity.by_cycles(factors, reflectance, first, cycles - 2, checkpoint)
+    return total
+
+
+def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], list[Source]]:
+    """Luminous surfaces, and sun patches on diffuse surfaces, as sources."""
+    outlines = geometry.outlines
+    emitters, sunny = [], []
+    for polygon, material, two_sided in zip(outlines.vertices, outlines.materials, outlines.two_sided, strict=True):
+        if material.exitance > 0:
+            emitters.append(Source(polygon, material.exitance))
+            if two_sided:
+                emitters.append(Source(polygon[::-1], material.exitance))
+    for patch in sunlight.patches:
+        reflectance = outlines.materials[patch.outline].diffuse_reflectance
+        if reflectance > 0 and (patch.front or outlines.two_sided[patch.outline]):
+            polygon = patch.polygon if patch.front else patch.polygon[::-1]
+            sunny.append(Source(polygon, reflectance * patch.illuminance))
+    return emitters, sunny
+
+
+def _gather_elements(transfer: Transfer, sources: list[Source], recorder: Recorder) -> np.ndarray:
+    geometry = transfer.geometry
+    out = np.zeros(len(geometry.element_points))
+    sheet = geometry.fracture.element_sheet
+    order = np.argsort(sheet, kind="stable")
+    bounds = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0, [True])))
+    tasks = []
+    for a, b in zip(bounds[:-1], bounds[1:], strict=True):
+        tasks += [order[k : min(k + 512, b)] for k in range(a, b, 512)]
+
+    def work(members, checkpoint):
+        normal = geometry.element_normals[members[0]]
+        out[members] = gather_sources(geometry.outlines, sources, geometry.element_points[members], normal, transfer.limits.cutoff, checkpoint)
+
+    run_parallel(work, tasks, transfer.threads, lambda done: recorder.report(0.1 + 0.6 * done, "interreflection"))
+    return out
+
+
+def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:
+    """(p,) float: area-weighted means over each patch's elements of values ``(e,)``."""
+    patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
+    mine = patch >= 0
+    count = geometry.targets.patches.count
+    total = np.bincount(patch[mine], weights=area[mine], minlength=count)
+    return np.bincount(patch[mine], weights=(area * values)[mine], minlength=count) / total
+
+
+def _check_options(light, tolerance, cycles) -> None:
+    if not isinstance(light, Daylight):
+        raise SceneError(f"solve needs a luzespecular.Daylight, not {type(light).__name__}; e.g. Daylight(sky=UniformSky(1000))")
+    if light.sun is not None and light.sun.disc:
+        raise SceneError("Sun(disc=True), penumbras, is not available yet; leave out disc")
+    try:
+        number = float(tolerance)
+    except (TypeError, ValueError):
+        raise SceneError(f"tolerance must be a number, not {tolerance!r}") from None
+    if not 0 < number < 1:
+        raise SceneError(f"tolerance must lie between 0 and 1 (1e-4 is usual), not {tolerance!r}")
+    if cycles is not None and (isinstance(cycles, bool) or not isinstance(cycles, int | np.integer) or cycles < 0):
+        raise SceneError(f"cycles must be a whole number of at least 0, or None for all, not {cycles!r}")

@@ -1,0 +1,345 @@
+"""Sunlight as exact polygons: where the beam lands, straight, through panes and off mirrors (virtual Suns).
+
+The Sun's beam is collimated, so its shadow on a plane is a polygon. What each outline receives is its own polygon less the prisms of
+all outlines nearer to the Sun; a lit piece of a mirror is the mouth of a further, reflected beam.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import polygons
+from .projection import reflect
+from .specular import DEEPEST_CHAIN, Outlines
+
+
+@dataclass(frozen=True, eq=False)
+class Beam:
+    """A collimated beam of sunlight.
+
+    Attributes
+    ----------
+    travel : (3,) float, unit
+        Direction in which light goes.
+    normal_illuminance : float
+        On a plane that faces it [lx].
+    mouth : (v, 3) float or None
+        Convex polygon that it comes out of; None for the Sun itself.
+    ahead : (3,) float or None
+        Normal of the mouth's plane on the side that the beam goes to.
+    order : int
+        Mirrors on the way.
+    """
+
+    travel: np.ndarray
+    normal_illuminance: float
+    mouth: np.ndarray | None = None
+    ahead: np.ndarray | None = None
+    order: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class SunPatch:
+    """A convex piece of an outline that a beam lights evenly.
+
+    Attributes
+    ----------
+    outline : int
+    front : bool
+    polygon : (v, 3) float
+    illuminance : float
+        Incident on the surface [lx].
+    order : int
+        Mirrors on the way.
+    """
+
+    outline: int
+    front: bool
+    polygon: np.ndarray
+    illuminance: float
+    order: int
+
+
+@dataclass(frozen=True, eq=False)
+class Sunlight:
+    """All that the Sun lights.
+
+    Attributes
+    ----------
+    beams : list of Beam
+        The Sun's own first.
+    patches : list of SunPatch
+    truncated : float
+        Flux of the chains that were cut off [lm].
+    """
+
+    beams: list[Beam]
+    patches: list[SunPatch]
+    truncated: float
+
+
+NO_SUNLIGHT = Sunlight([], [], 0.0)
+
+
+def trace_sun(outlines: Outlines, direction, normal_illuminance: float, cutoff: float, checkpoint: Callable[[], None]) -> Sunlight:
+    """Follow the Sun's beam through the scene.
+
+    Parameters
+    ----------
+    outlines : Outlines
+    direction : (3,) float
+        Towards the Sun, unit.
+    normal_illuminance : float
+        [lx]
+    cutoff : float
+        Beams weaker than this share of the Sun are not followed.
+    checkpoint : callable
+        Called between beams; may raise to stop.
+
+    Returns
+    -------
+    Sunlight
+    """
+    sun = Beam(-np.asarray(direction, float), float(normal_illuminance))
+    waiting, beams, patches, truncated = [sun], [], [], 0.0
+    while waiting:
+        beam = waiting.pop(0)
+        beams.append(beam)
+        checkpoint()
+        for patch in land(outlines, beam):
+            patches.append(patch)
+            material = outlines.materials[patch.outline]
+            if not material.is_specular or not (
+                patch.front or outlines.two_sided[patch.outline] or material.reflects_both_sides
+            ):
+                continue
+            normal = outlines.normals[patch.outline]
+            cosine = abs(float(beam.travel @ normal))
+            share = float(material.specular_at(cosine))
+            strength = patch.illuminance / cosine * share
+            if strength < cutoff * normal_illuminance or patch.order >= DEEPEST_CHAIN:
+                truncated += patch.illuminance * share * float(polygons.areas(patch.polygon))
+                continue
+            ahead = normal if patch.front else -normal
+            waiting.append(Beam(reflect(beam.travel, normal), strength, patch.polygon, ahead, patch.order + 1))
+    return Sunlight(beams, patches, truncated)
+
+
+def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
+    """Pieces of outlines that a beam reaches.
+
+    Parameters
+    ----------
+    outlines : Outlines
+    beam : Beam
+
+    Returns
+    -------
+    list of SunPatch
+    """
+    tolerance = outlines.tolerance
+    vertices = outlines.vertices
+    present = np.arange(len(vertices))
+    if beam.mouth is not None:
+        start = float(beam.ahead @ beam.mouth[0])
+        present = np.flatnonzero((vertices @ beam.ahead - start > tolerance).any(axis=1))
+        vertices = polygons.clip(vertices[present], beam.ahead, start)
+    cosine = outlines.normals[present] @ beam.travel
+    walls, wall_offsets = prism(vertices, beam.travel, cosine)
+    found = []
+    for k in np.flatnonzero(np.abs(cosine) > 1e-12):
+        region = vertices[k][None]
+        if beam.mouth is not None:
+            around, at = _mouth_prism(beam)
+            for normal, offset in zip(around, at, strict=True):
+                region = polygons.clip(region, normal, offset)
+            region = region[polygons.areas(region) > tolerance**2]
+            if not len(region):
+                continue
+        pieces = [(region, np.ones(len(region)))]
+        normal, plane = outlines.normals[present[k]], float(outlines.offsets[present[k]])
+        upstream = -normal * np.sign(cosine[k])
+        height = vertices @ upstream - plane * -np.sign(cosine[k])
+        spread = np.einsum("owc,vc->owv", walls, region.reshape(-1, 3)) - wall_offsets[:, :, None]
+        meets = (height > tolerance).any(axis=1) & (np.abs(cosine) > 1e-12) & (spread.max(axis=2) > tolerance).all(axis=1)
+        meets[k] = False
+        for b in np.flatnonzero(meets):
+            pieces = _shadow(outlines, pieces, vertices[b], int(present[b]), upstream, -plane * np.sign(cosine[k]), beam, cosine[b])
+            if not pieces:
+                break
+        for polygon, factor in ((p, f) for batch, factors in pieces for p, f in zip(batch, factors, strict=True)):
+            if polygons.areas(polygon) > tolerance**2:
+                lux = beam.normal_illuminance * abs(float(cosine[k])) * float(factor)
+                found.append(SunPatch(int(present[k]), bool(cosine[k] < 0), polygon, lux, beam.order))
+    return found
+
+
+def _shadow(outlines, pieces, blocker, outline, upstream, plane, beam, cosine):
+    """Pieces less a blocker's shadow; behind a pane the shadow is kept, dimmed."""
+    nearer = polygons.clip(blocker[None], upstream, plane)
+    walls, offsets = prism(nearer, beam.travel, np.array([cosine]))
+    material = outlines.materials[outline]
+    through = float(material.transmittance_at(cosine)) if material.is_transparent else 0.0
+    left = []
+    for batch, factors in pieces:
+        inside = batch
+        for normal, offset in zip(walls[0], offsets[0], strict=True):
+            if not normal.any():
+                continue
+            outside = polygons.clip(inside, -normal, -offset)
+            keep = polygons.areas(outside) > outlines.tolerance**2
+            if keep.any():
+                left.append((outside[keep], factors[keep]))
+            inside = polygons.clip(inside, normal, offset)
+            lit = polygons.areas(inside) > outlines.tolerance**2
+            inside, factors = inside[lit], factors[lit]
+            if not len(inside):
+                break
+        if through > 0 and len(inside):
+            left.append((inside, factors * through))
+    return left
+
+
+def prism(polygon, travel, cosine) -> tuple[np.ndarray, np.ndarray]:
+    """Half-spaces that bound the prisms of convex polygons along a direction.
+
+    Parameters
+    ----------
+    polygon : (o, w, 3) float, padded
+    travel : (3,) float
+    cosine : (o,) float
+        ``normal · travel`` of each polygon.
+
+    Returns
+    -------
+    normals : (o, w, 3) float
+        Zero for padding edges (which then bound nothing: offset -inf).
+    offsets : (o, w) float
+    """
+    edge = np.roll(polygon, -1, axis=1) - polygon
+    normals = np.cross(travel, edge) * np.sign(cosine)[:, None, None]
+    length = np.linalg.norm(normals, axis=2, keepdims=True)
+    normals = np.where(length > 0, normals / np.where(length > 0, length, 1.0), 0.0)
+    offsets = np.einsum("owc,owc->ow", normals, polygon)
+    return normals, np.where(length[:, :, 0] > 0, offsets, -np.inf)
+
+
+def _mouth_prism(beam: Beam) -> tuple[np.ndarray, np.ndarray]:
+    facing = float(polygons.newell_normal(beam.mouth) @ beam.travel)
+    normals, offsets = prism(beam.mouth[None], beam.travel, np.array([facing]))
+    bounding = normals[0].any(axis=1)
+    return normals[0][bounding], offsets[0][bounding]
+
+
+def light_elements(patches: list[SunPatch], elements, element_sheet, outline_sheet, sheets: int, specular: bool) -> np.ndarray:
+    """Mean illuminance on elements from sun patches: exactly the lit share of each.
+
+    Parameters
+    ----------
+    patches : list of SunPatch
+    elements : (e, 3, 3) float
+    element_sheet : (e,) int, plus ``sheets`` for backs
+    outline_sheet : (o,) int
+    sheets : int
+    specular : bool
+        Patches that came by mirrors, or those that did not.
+
+    Returns
+    -------
+    (e,) float [lx]
+    """
+    out = np.zeros(len(elements))
+    members: dict[int, np.ndarray] = {}
+    for patch in patches:
+        if (patch.order > 0) != specular:
+            continue
+        sheet = int(outline_sheet[patch.outline]) + (0 if patch.front else sheets)
+        if sheet not in members:
+            members[sheet] = np.flatnonzero(element_sheet == sheet)
+        mine = members[sheet]
+        if len(mine):
+            out[mine] += patch.illuminance * lit_share(elements[mine], patch.polygon)
+    return out
+
+
+def lit_share(triangles, polygon) -> np.ndarray:
+    """(n,) float: share of each triangle's area inside a coplanar convex polygon ``(v, 3)``."""
+    normal = polygons.newell_normal(polygon)
+    edge = np.roll(polygon, -1, axis=0) - polygon
+    inward = np.cross(normal, edge)
+    length = np.linalg.norm(inward, axis=1)
+    inward, start = inward[length > 0] / length[length > 0, None], polygon[length > 0]
+    distance = np.einsum("ntc,ec->nte", triangles, inward) - np.einsum("ec,ec->e", inward, start)
+    inside = (distance >= 0).all(axis=(1, 2))
+    cut = np.flatnonzero(~inside & (distance > 0).any(axis=1).all(axis=1))
+    share = inside.astype(float)
+    if len(cut):
+        part = triangles[cut]
+        for n, p in zip(inward, start, strict=True):
+            part = polygons.clip(part, n, float(n @ p))
+        share[cut] = polygons.areas(part) / polygons.areas(triangles[cut])
+    return share
+
+
+def light_points(outlines: Outlines, beams: list[Beam], points, normals) -> tuple[np.ndarray, np.ndarray]:
+    """Sunlight at free points.
+
+    Parameters
+    ----------
+    outlines : Outlines
+    beams : list of Beam
+    points, normals : (m, 3) float
+
+    Returns
+    -------
+    direct, specular : (m,) float [lx]
+    """
+    out = np.zeros((2, len(points)))
+    for beam in beams:
+        cosine = -(normals @ beam.travel)
+        rows = np.flatnonzero(cosine > 1e-12)
+        limit = np.full(len(rows), np.inf)
+        if beam.mouth is not None:
+            slope = float(beam.travel @ beam.ahead)
+            limit = ((points[rows] - beam.mouth[0]) @ beam.ahead) / slope
+            back = points[rows] - limit[:, None] * beam.travel
+            around, at = _mouth_prism(beam)
+            inside = (back @ around.T >= at - outlines.tolerance).all(axis=1) & (limit > outlines.tolerance)
+            rows, limit = rows[inside], limit[inside]
+        if len(rows):
+            clear = transmittance_along(outlines, points[rows], -beam.travel, limit)
+            out[min(beam.order, 1), rows] += beam.normal_illuminance * cosine[rows] * clear
+    return out[0], out[1]
+
+
+def transmittance_along(outlines: Outlines, points, direction, limit) -> np.ndarray:
+    """Share of light that comes along rays.
+
+    Parameters
+    ----------
+    outlines : Outlines
+    points : (m, 3) float
+    direction : (3,) float, unit
+        The same for all.
+    limit : (m,) float
+        Nothing farther than this blocks [m].
+
+    Returns
+    -------
+    (m,) float
+    """
+    share = np.ones(len(points))
+    cosine = outlines.normals @ direction
+    walls, offsets = prism(outlines.vertices, direction, cosine)
+    for o in np.flatnonzero(np.abs(cosine) > 1e-12):
+        distance = (outlines.offsets[o] - points @ outlines.normals[o]) / cosine[o]
+        height = np.abs(points @ outlines.normals[o] - outlines.offsets[o])
+        met = (height > outlines.tolerance) & (distance > 0) & (distance < limit - outlines.tolerance)
+        met &= (points @ walls[o].T >= offsets[o]).all(axis=1)
+        if met.any():
+            material = outlines.materials[o]
+            share[met] *= float(material.transmittance_at(cosine[o])) if material.is_transparent else 0.0
+    return share
