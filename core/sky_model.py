@@ -113,6 +113,7 @@ def horizontal_integral(
         )
     )
     ends = np.unique(ends[(ends >= 0.0) & (ends <= np.pi - altitude)])
+    ends = ends[np.diff(ends, prepend=-1.0) > 1e-12]  # a panel without width has rings that meet nothing
     angles, weights = _panels(ends, _RADIAL_RULE)
 
     mean_sine = np.cos(angles) * np.sin(altitude)  # along a ring, sin γ = mean + swing · cos ψ
