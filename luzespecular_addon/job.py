@@ -1,0 +1,67 @@
+"""A study on its way in a thread of its own. No bpy: the thread may run while Blender draws."""
+
+from __future__ import annotations
+
+import queue
+import threading
+
+from .. import core as luz
+from .session import Session
+from .study import Study
+
+
+class Job:
+    """A study on its way in a thread of its own; knows nothing of Blender.
+
+    Attributes
+    ----------
+    result : luz.Result or None
+    error : Exception or None
+        Why there is no result.
+    """
+
+    def __init__(self, planned: Study, kept: Session):
+        self.study = planned
+        self._progress: queue.SimpleQueue[tuple[float, str]] = queue.SimpleQueue()
+        self.result: luz.Result | None = None
+        self.error: Exception | None = None
+        self._kept = kept
+        self._cancelled = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="LuzEspecular", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def cancel(self) -> None:
+        """Ask the solver to stop at its next step."""
+        self._cancelled.set()
+
+    @property
+    def finished(self) -> bool:
+        """Whether there is a result or an error."""
+        return not self._thread.is_alive()
+
+    def wait(self) -> None:
+        """Block until the solver has stopped."""
+        self._thread.join()
+
+    def latest(self, timeout: float = 0.0) -> tuple[float, str] | None:
+        """Return the last progress told since the last look, waiting for one up to `timeout` seconds; None without news."""
+        latest = None
+        try:
+            latest = self._progress.get(timeout=timeout) if timeout else self._progress.get_nowait()
+            while True:
+                latest = self._progress.get_nowait()
+        except queue.Empty:
+            return latest
+
+    def _tell(self, fraction: float, stage: str) -> bool:
+        self._progress.put((fraction, stage))
+        return not self._cancelled.is_set()
+
+    def _run(self) -> None:
+        try:
+            self.result = self.study.run(self._kept, self._tell)
+        except Exception as error:  # noqa: BLE001 - handed over to the main thread, which tells the user
+            self.error = error

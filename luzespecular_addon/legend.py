@@ -1,0 +1,120 @@
+"""The legend in the 3D viewport: the colour bar with its lux, crisp at every resolution, readable on every theme."""
+
+from __future__ import annotations
+
+import blf
+import bpy
+import gpu
+import numpy as np
+from bpy.app.translations import pgettext_iface as iface_
+from gpu_extras.batch import batch_for_shader
+
+from . import colours, display
+from .properties import QUANTITY_ITEMS
+
+_STEPS = 64
+_MARGIN, _WIDTH, _HEIGHT, _PADDING, _TEXT = 24, 18, 220, 10, 12  # pixels at a resolution scale of 1
+_PANEL_COLOUR = (0.08, 0.08, 0.08, 0.78)
+_TEXT_COLOUR = (0.95, 0.95, 0.95, 1.0)
+
+_handles: list[object] = []
+
+
+def register() -> None:
+    """Begin to draw; without a window there is nothing to draw on."""
+    if not bpy.app.background:
+        _handles.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL"))
+
+
+def unregister() -> None:
+    """Stop drawing."""
+    while _handles:
+        bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+
+
+def label(value: float) -> str:
+    """Return a value as a legend writes it: grouped thousands, no more digits than it needs."""
+    return f"{value:,.0f}".replace(",", " ") if value >= 10 else f"{value:.3g}"
+
+
+def entries(scale: colours.ColourScale) -> list[tuple[float, str]]:
+    """Return position (0 to 1) and text of each tick of a scale."""
+    ticks = scale.ticks()
+    return list(zip(scale.position(ticks).tolist(), (label(tick) for tick in ticks), strict=True))
+
+
+def _draw() -> None:
+    scene, space = bpy.context.scene, bpy.context.space_data
+    settings = scene.luzespecular.display
+    if not (settings.show_legend and space.overlay.show_overlays and display.has_results(scene)):
+        return
+    size = bpy.context.preferences.system.ui_scale
+    scale = display.current_scale(scene)
+    lines = [title(scene), *(scene.luzespecular.results.title.split("\n"))]
+    ticks = entries(scale)
+    font = 0
+    blf.size(font, _TEXT * size)
+    text_width = max(blf.dimensions(font, text)[0] for text in [*lines, *(text for _, text in ticks)])
+    margin, width, height, padding = (_pixels * size for _pixels in (_MARGIN, _WIDTH, _HEIGHT, _PADDING))
+    line = 1.5 * _TEXT * size
+    panel_width = max(text_width, width + padding + text_width * 0.5) + 2 * padding
+    panel_height = height + (len(lines) + 2) * line + 2 * padding
+    left, bottom = _left_edge() + margin, margin
+    gpu.state.blend_set("ALPHA")
+    _rectangle(left, bottom, panel_width, panel_height, _PANEL_COLOUR)
+    bar_left, bar_bottom = left + padding, bottom + padding + 1.5 * line
+    _bar(scale.name, bar_left, bar_bottom, width, height)
+    _hatch(bar_left, bottom + padding, width, 0.8 * line)
+    _text(font, iface_("not computed"), bar_left + width + padding, bottom + padding + 0.2 * line)
+    for position, text in ticks:
+        y = bar_bottom + position * height
+        _rectangle(bar_left + width, y - 0.5 * size, 0.4 * padding, size, _TEXT_COLOUR)
+        _text(font, text, bar_left + width + padding, y - 0.35 * _TEXT * size)
+    for row, text in enumerate(reversed(lines)):
+        _text(font, text, bar_left, bar_bottom + height + (row + 0.8) * line)
+    gpu.state.blend_set("NONE")
+
+
+def title(scene: bpy.types.Scene) -> str:
+    """Return the legend's heading: the quantity shown and its unit."""
+    settings = scene.luzespecular.display
+    quantity = settings.quantity if settings.view == "RESULTS" else "illuminance"
+    name = next(name for key, name, _ in QUANTITY_ITEMS if key == quantity)
+    return f"{iface_('Illuminance')}: {iface_(name)} [lx]"
+
+
+def _left_edge() -> float:
+    """Return where the viewport is free, beside the toolbar where that overlaps the view."""
+    area = bpy.context.area
+    tools = next((region for region in area.regions if region.type == "TOOLS"), None)
+    return tools.width if tools and bpy.context.preferences.system.use_region_overlap else 0
+
+
+def _rectangle(left: float, bottom: float, width: float, height: float, colour: tuple[float, ...]) -> None:
+    corners = ((left, bottom), (left + width, bottom), (left + width, bottom + height), (left, bottom + height))
+    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+    shader.uniform_float("color", colour)
+    batch_for_shader(shader, "TRIS", {"pos": corners}, indices=((0, 1, 2), (0, 2, 3))).draw(shader)
+
+
+def _bar(scale_name: str, left: float, bottom: float, width: float, height: float) -> None:
+    steps = np.linspace(0.0, 1.0, _STEPS)
+    rgba = np.column_stack([colours.scale_colours(scale_name, steps), np.ones(_STEPS)])
+    heights = bottom + steps * height
+    corners = [(x, y) for y in heights for x in (left, left + width)]
+    shader = gpu.shader.from_builtin("SMOOTH_COLOR")
+    batch = batch_for_shader(shader, "TRI_STRIP", {"pos": corners, "color": np.repeat(rgba, 2, axis=0).tolist()})
+    batch.draw(shader)
+
+
+def _hatch(left: float, bottom: float, width: float, height: float) -> None:
+    dark, light = ((*grey, 1.0) for grey in colours.NOT_COMPUTED_SRGB)
+    corners = ((left, bottom), (left + width, bottom), (left, bottom + height), (left + width, bottom + height))
+    shader = gpu.shader.from_builtin("SMOOTH_COLOR")
+    batch_for_shader(shader, "TRI_STRIP", {"pos": corners, "color": (dark, light, light, dark)}).draw(shader)
+
+
+def _text(font: int, text: str, x: float, y: float) -> None:
+    blf.color(font, *_TEXT_COLOUR)
+    blf.position(font, round(x), round(y), 0)
+    blf.draw(font, text)

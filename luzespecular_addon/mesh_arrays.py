@@ -1,0 +1,176 @@
+"""NumPy arrays in and out of Blender meshes: the only room that touches ``foreach_get`` and ``foreach_set``.
+
+Buffers are C-contiguous and of the type that Blender stores, so that each call is one copy of memory.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class TriangulatedMesh:
+    """A mesh cut into triangles, with the polygon each triangle comes from.
+
+    Attributes
+    ----------
+    positions : (v, 3) float32
+        Vertex positions in object space, Blender units.
+    triangles : (t, 3) int32
+        Vertex indices; normals by the right-hand rule.
+    polygons : (t,) int32
+        Polygon of each triangle.
+    material_indices : (p,) int32
+        Material slot of each polygon.
+    closed : bool
+        Whether every edge belongs to exactly two polygons.
+    """
+
+    positions: NDArray[np.float32]
+    triangles: NDArray[np.int32]
+    polygons: NDArray[np.int32]
+    material_indices: NDArray[np.int32]
+    closed: bool
+
+
+def read_triangles(mesh: bpy.types.Mesh) -> TriangulatedMesh:
+    """Read a mesh as triangles (concave polygons are tessellated by Blender, area exact)."""
+    mesh.calc_loop_triangles()
+    positions = np.empty((len(mesh.vertices), 3), np.float32)
+    triangles = np.empty((len(mesh.loop_triangles), 3), np.int32)
+    polygons = np.empty(len(mesh.loop_triangles), np.int32)
+    if len(positions):
+        mesh.attributes["position"].data.foreach_get("vector", positions.reshape(-1))
+    if len(triangles):
+        mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
+        mesh.loop_triangle_polygons.foreach_get("value", polygons)
+    materials = read_face_values(mesh, "material_index", np.int32)
+    if materials is None:
+        materials = np.zeros(len(mesh.polygons), np.int32)
+    return TriangulatedMesh(positions, triangles, polygons, materials, _is_closed(mesh))
+
+
+def _is_closed(mesh: bpy.types.Mesh) -> bool:
+    if not len(mesh.loops):
+        return False
+    edges = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_edge"].data.foreach_get("value", edges)
+    uses = np.bincount(edges, minlength=len(mesh.edges))
+    return bool(np.all(uses == 2))
+
+
+def corner_counts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Return the number of corners of each polygon, (p,) int32."""
+    starts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return np.diff(starts, append=np.int32(len(mesh.loops)))
+
+
+def polygon_areas(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Return the area of each polygon, (p,) float32, Blender units squared."""
+    areas = np.empty(len(mesh.polygons), np.float32)
+    mesh.polygons.foreach_get("area", areas)
+    return areas
+
+
+def read_face_values(mesh: bpy.types.Mesh, name: str, dtype: type) -> NDArray | None:
+    """Read a FLOAT or INT attribute of the FACE domain, (p,); None where there is no such attribute."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != "FACE" or len(attribute.data) != len(mesh.polygons):
+        return None
+    values = np.empty(len(mesh.polygons), dtype)
+    attribute.data.foreach_get("value", values)
+    return values
+
+
+def write_face_floats(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
+    """Write (p,) floats as a FLOAT attribute of the FACE domain, made anew if absent."""
+    _attribute(mesh, name, "FLOAT", "FACE").data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+
+
+def write_face_integers(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
+    """Write (p,) integers as an INT attribute of the FACE domain, made anew if absent."""
+    _attribute(mesh, name, "INT", "FACE").data.foreach_set("value", np.ascontiguousarray(values, np.int32))
+
+
+def write_corner_colours(mesh: bpy.types.Mesh, name: str, colours: NDArray) -> None:
+    """Write (l, 4) scene-linear colours as a FLOAT_COLOR attribute of the CORNER domain, made anew if absent."""
+    attribute = mesh.color_attributes.get(name)
+    if attribute is None:
+        attribute = mesh.color_attributes.new(name, "FLOAT_COLOR", "CORNER")
+    attribute.data.foreach_set("color", np.ascontiguousarray(colours, np.float32).reshape(-1))
+
+
+def read_corner_colours(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float32] | None:
+    """Read the scene-linear colours of a CORNER colour attribute, (l, 4); None where there is none."""
+    attribute = mesh.color_attributes.get(name)
+    if attribute is None or attribute.domain != "CORNER":
+        return None
+    colours = np.empty((len(mesh.loops), 4), np.float32)
+    attribute.data.foreach_get("color", colours.reshape(-1))
+    return colours
+
+
+def remove_attribute(mesh: bpy.types.Mesh, name: str) -> None:
+    """Remove an attribute if the mesh has it."""
+    attribute = mesh.attributes.get(name)
+    if attribute is not None:
+        mesh.attributes.remove(attribute)
+
+
+def new_triangle_mesh(name: str, vertices: NDArray) -> bpy.types.Mesh:
+    """Make a mesh of separate triangles from (n, 3, 3) positions in Blender units."""
+    count = len(vertices)
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(3 * count)
+    mesh.loops.add(3 * count)
+    mesh.polygons.add(count)
+    if count:
+        corners = np.arange(3 * count, dtype=np.int32)
+        mesh.attributes["position"].data.foreach_set(
+            "vector", np.ascontiguousarray(vertices, np.float32).reshape(-1)
+        )
+        mesh.loops.foreach_set("vertex_index", corners)
+        mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(corners[::3]))
+        mesh.update(calc_edges=True)
+    return mesh
+
+
+class ActiveNames(NamedTuple):
+    """Names of a mesh's active attribute, active colour and colour to render; empty where there is none."""
+
+    attribute: str
+    colour: str
+    render_colour: str
+
+
+def active_names(mesh: bpy.types.Mesh) -> ActiveNames:
+    """Return which attributes of a mesh are active; adding and removing attributes can change that."""
+    active, colours = mesh.attributes.active, mesh.color_attributes
+    return ActiveNames(active.name if active else "", colours.active_color_name, colours.default_color_name)
+
+
+def restore_active(mesh: bpy.types.Mesh, names: ActiveNames) -> None:
+    """Make the attributes active again that `active_names` found."""
+    mesh.attributes.active = mesh.attributes.get(names.attribute)
+    mesh.color_attributes.active_color_name = names.colour
+    mesh.color_attributes.default_color_name = names.render_colour
+
+
+def make_colour_active(mesh: bpy.types.Mesh, name: str) -> None:
+    """Make a colour attribute the one that the viewport shows and that is rendered."""
+    mesh.color_attributes.active_color_name = name
+    mesh.color_attributes.default_color_name = name
+
+
+def _attribute(mesh: bpy.types.Mesh, name: str, data_type: str, domain: str) -> bpy.types.Attribute:
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.data_type, attribute.domain) != (data_type, domain):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    return attribute or mesh.attributes.new(name, data_type, domain)

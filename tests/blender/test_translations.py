@@ -1,0 +1,122 @@
+"""Every text of the interface has its Brazilian Portuguese; the texts are found in the source, not in a list."""
+
+import ast
+import string
+from pathlib import Path
+
+import pytest
+
+ADDON = Path(__file__).resolve().parents[2] / "luzespecular_addon"
+TEXT_KEYWORDS = {"name", "description", "text"}
+TRANSLATING_CALLS = {"iface_", "rpt_", "poll_message_set"}
+PROPERTY_CALLS = {
+    "BoolProperty",
+    "CollectionProperty",
+    "EnumProperty",
+    "FloatProperty",
+    "IntProperty",
+    "PointerProperty",
+    "StringProperty",
+}
+
+
+def _literal(node):
+    """The text of a string literal, written in one piece or several; None for anything else."""
+    try:
+        value = ast.literal_eval(node)
+    except ValueError:
+        return None
+    return value if isinstance(value, str) and any(letter.isalpha() for letter in value) else None
+
+
+def _called(node):
+    function = node.func
+    return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+
+
+def _enum_items(tree):
+    """Names and descriptions of all (identifier, name, description) tuples."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Tuple) and len(node.elts) == 3 and all(_literal(e) or _is_digit(e) for e in node.elts):
+            identifier = ast.literal_eval(node.elts[0])
+            if identifier.replace("_", "").isalnum() and " " not in identifier and _literal(node.elts[2]):
+                yield from (_literal(element) for element in node.elts[1:])
+
+
+def _is_digit(node):
+    return isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value.isdigit()
+
+
+def interface_texts():
+    """(context, text) of every text that the user can see."""
+    texts = set()
+    for path in sorted(ADDON.glob("*.py")):
+        if path.name.startswith("translations") or path.name == "__main__.py":
+            continue
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call):
+                name = _called(node)
+                if name in TRANSLATING_CALLS and node.args and _literal(node.args[0]):
+                    texts.add(("*", _literal(node.args[0])))
+                visible = name in PROPERTY_CALLS or name in {"label", "operator", "prop"}
+                for keyword in node.keywords if visible else ():
+                    if keyword.arg in TEXT_KEYWORDS and _literal(keyword.value):
+                        texts.add(("*", _literal(keyword.value)))
+            if isinstance(node, ast.ClassDef):
+                operator = "_OT_" in node.name
+                if operator or "_PT_" in node.name:  # Blender shows their docstrings as tooltips
+                    texts.add(("*", ast.get_docstring(node)))
+                for statement in node.body:
+                    targets = [t.id for t in getattr(statement, "targets", []) if isinstance(t, ast.Name)]
+                    if "bl_label" in targets:
+                        texts.add(("Operator" if operator else "*", _literal(statement.value)))
+        if path.name == "properties.py":
+            texts.update(("*", text) for text in _enum_items(tree))
+    return texts
+
+
+def test_texts_are_found():
+    texts = interface_texts()
+    assert len(texts) > 150
+    for expected in (
+        ("Operator", "Solve"),
+        ("*", "Site & Time"),
+        ("*", "North Offset"),
+        ("*", "1 Overcast, steep gradation"),
+        ("*", "Leave Edit Mode first (Tab)"),
+        ("*", "No results yet"),
+    ):
+        assert expected in texts
+
+
+def test_every_text_is_translated(addon):
+    table = addon.translations.table()["pt_BR"]
+    missing = sorted(interface_texts() - set(table))
+    assert not missing, "\n".join(f"{context}: {text}" for context, text in missing)
+
+
+def test_nothing_is_translated_that_nobody_sees(addon):
+    # Stages are named by the solver; "LuzEspecular" texts come from elsewhere.
+    extra = sorted(set(addon.translations.table()["pt_BR"]) - interface_texts())
+    stages = set(addon.translations.STAGES)
+    assert not [entry for entry in extra if entry[1] not in stages]
+
+
+def test_placeholders_agree(addon):
+    for (_, english), translated in addon.translations.table()["pt_BR"].items():
+        fields = [
+            sorted(field for _, field, _, _ in string.Formatter().parse(text) if field is not None)
+            for text in (english, translated)
+        ]
+        assert fields[0] == fields[1], english
+
+
+def test_translation_reaches_the_interface(addon, bpy):
+    view = bpy.context.preferences.view
+    try:
+        view.language = "pt_BR"
+    except TypeError:
+        pytest.skip("this Blender has no translations")
+    view.use_translate_interface = True
+    assert bpy.app.translations.pgettext_iface("North Offset") == "Desvio do norte"
