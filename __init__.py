@@ -1,4 +1,4 @@
-"""Blender extension LuzEspecular. Imports nothing until Blender asks, so that other tools may import this file freely."""
+"""Blender extension LuzEspecular. Imports nothing until Blender asks, so that any tool may import this file."""
 
 
 def register():

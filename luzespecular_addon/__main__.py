@@ -1,4 +1,4 @@
-"""The headless command with Blender's Python module, nothing installed: ``python luzespecular_addon scene.blend solve …``."""
+"""The headless command with Blender's Python module: ``python luzespecular_addon scene.blend solve …``."""
 
 from __future__ import annotations
 

@@ -14,8 +14,8 @@ _ANCHORS = {
     " addc30 d8e219 fde725",
     "CIVIDIS": "00224e 002e6a 1a386f 32436d 434e6c 535a6d 61656f 6f7073 7d7c78 8c8878 9b9476 aba072 bcae6c cdbb63"
     " dec958 f0d846 fee838",
-    "INFERNO": "000004 0b0724 210c4a 3d0965 57106e 71196e 8a226a a32c61 bc3754 d24644 e45a31 f1731d f98e09 fcac11 f9cb35"
-    " f2ea69 fcffa4",
+    "INFERNO": "000004 0b0724 210c4a 3d0965 57106e 71196e 8a226a a32c61 bc3754 d24644 e45a31 f1731d f98e09 fcac11"
+    " f9cb35 f2ea69 fcffa4",
     "SPECTRUM": "0000a8 0038ff 00a0ff 00e0d0 00d060 70d800 e8e800 ffb000 ff6000 e80000 a00020",
     "GREY": "101010 f4f4f4",
 }
@@ -23,6 +23,8 @@ _ANCHORS = {
 # Faces without a value alternate these two greys from corner to corner: a gradient that no scale can produce,
 # since a face with a value has one flat colour.
 NOT_COMPUTED_SRGB = ((0.30, 0.30, 0.30), (0.62, 0.62, 0.62))
+
+_TABLE = 4096  # colours of a scale that faces are given; far more than the eye tells apart
 
 LOWEST_SHARE = 1e-3
 """Smallest value that an automatic logarithmic range shows, as a share of its largest."""
@@ -104,10 +106,11 @@ def corner_colours(values: ArrayLike, corners: ArrayLike, scale: ColourScale) ->
         The scale to colour by.
     """
     values = np.asarray(values, float)
-    colours = np.ones((len(values), 4), np.float32)
-    colours[:, :3] = srgb_to_linear(scale.srgb(values))
+    table = np.ones((_TABLE, 4), np.float32)
+    table[:, :3] = srgb_to_linear(scale_colours(scale.name, np.linspace(0.0, 1.0, _TABLE)))
+    place = np.rint(np.nan_to_num(scale.position(values)) * (_TABLE - 1)).astype(np.int64)
     missing = np.repeat(np.isnan(values), corners)
-    colours = np.repeat(colours, corners, axis=0)
+    colours = np.repeat(table[place], corners, axis=0)
     if missing.any():
         hatch = srgb_to_linear(NOT_COMPUTED_SRGB).astype(np.float32)
         colours[missing, :3] = hatch[np.flatnonzero(missing) % 2]

@@ -25,7 +25,12 @@ _NUMBERS = (
     ("--longitude", "site", "longitude", "degrees, east positive"),
     ("--time-zone", "site", "time_zone", "hours that clocks are ahead of UTC"),
     ("--north", "site", "north_offset", "angle in degrees from +Y to true north, clockwise"),
-    ("--sky-illuminance", "sky", "horizontal_illuminance", "lx by the sky on an open horizontal plane (with --sky cie)"),
+    (
+        "--sky-illuminance",
+        "sky",
+        "horizontal_illuminance",
+        "lx by the sky on an open horizontal plane (with --sky cie)",
+    ),
     ("--sun-illuminance", "sky", "sun_illuminance", "lx by the Sun on a plane that faces it (with --sky cie or none)"),
     ("--ground", "sky", "ground_reflectance", "reflectance of the ground around the scene"),
     ("--bands", "accuracy", "bands", "bands of the globe (sets --fineness expert)"),
@@ -185,7 +190,7 @@ def _run(planned: study.Study) -> luz.Result:
 
 
 class _Progress:
-    """Progress on the terminal: one line that is written over, or a line for every tenth where output goes to a file."""
+    """Progress on the terminal: one line written over, or a line for every tenth where that goes to a file."""
 
     def __init__(self):
         self._terminal = sys.stderr.isatty()
@@ -199,7 +204,12 @@ class _Progress:
         if step != self._told:
             self._told = step
             text = f"{percent:3d} %  {latest[1]}"
-            print(f"\r{text:<60}" if self._terminal else text, end="" if self._terminal else "\n", file=sys.stderr, flush=True)
+            print(
+                f"\r{text:<60}" if self._terminal else text,
+                end="" if self._terminal else "\n",
+                file=sys.stderr,
+                flush=True,
+            )
 
     def end(self) -> None:
         """Finish the line."""

@@ -1,4 +1,4 @@
-"""Showing results: false colours on the meshes, which of them the viewport shows, and its shading; and undoing all that."""
+"""Showing results: colours on the meshes, which of them the viewport shows, its shading; and undoing all that."""
 
 from __future__ import annotations
 
@@ -54,7 +54,8 @@ def apply_view(scene: bpy.types.Scene) -> None:
         if settings.is_results:
             _set_hidden(scene, object_, not show_fine)
         elif object_.name in standing_for and not settings.hidden_for_results:
-            settings.hidden_for_results = _set_hidden(scene, object_, True)
+            if _set_hidden(scene, object_, True):
+                settings.hidden_for_results = True
         elif settings.hidden_for_results and object_.name not in standing_for:
             _set_hidden(scene, object_, False)
             settings.property_unset("hidden_for_results")
@@ -63,7 +64,7 @@ def apply_view(scene: bpy.types.Scene) -> None:
 
 
 def clear(scene: bpy.types.Scene) -> None:
-    """Take away everything that results brought: attributes, the fine faces, hidden objects, viewport shading, tables."""
+    """Take away all that results brought: attributes, the fine faces, hidden objects, viewport shading, tables."""
     results_object.remove(scene)
     for mesh in writeback.written_meshes(scene):
         writeback.clear(mesh)

@@ -47,7 +47,7 @@ class Job:
         self._thread.join()
 
     def latest(self, timeout: float = 0.0) -> tuple[float, str] | None:
-        """Return the last progress told since the last look, waiting for one up to `timeout` seconds; None without news."""
+        """Return the last progress told since the last look, waiting up to `timeout` seconds; None without news."""
         latest = None
         try:
             latest = self._progress.get(timeout=timeout) if timeout else self._progress.get_nowait()

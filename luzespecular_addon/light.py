@@ -86,7 +86,7 @@ def _hour_of(instant: dt.datetime, site: bpy.types.PropertyGroup, longitude: flo
 
 def clock(hour: float) -> str:
     """Return an hour of the day as hh:mm."""
-    minutes = round(hour * 60.0) % (24 * 60) if hour < 24.0 else 24 * 60
+    minutes = round(hour * 60.0)
     return f"{minutes // 60:02d}:{minutes % 60:02d}"
 
 

@@ -2,10 +2,10 @@
 
 Rules for reading a shader, and no more than that:
 
-- reflectance: luminous weight of the linear colour (ITU-R BT.709); smooth metal counts as a mirror, rough metal as diffuse;
+- reflectance: luminous weight of the linear colour (ITU-R BT.709); smooth metal is a mirror, rough metal diffuse;
 - transmission: a pane of the shader's index of refraction, tinted by its colour; with mixtures, a plain straight share;
-- emission: exitance = π · 683 lm/W · strength · colour's weight, Blender's radiance in W/(m² sr) with 683 lm/W as in the
-  glTF exchange of Blender lights;
+- emission: exitance = π · 683 lm/W · strength · colour's weight, Blender's radiance in W/(m² sr) with 683 lm/W as in
+  the glTF exchange of Blender lights;
 - an input that a texture drives cannot be read: the viewport colour stands in, and the user is told.
 """
 
@@ -26,6 +26,8 @@ LUMENS_PER_WATT = 683.0
 """Luminous efficacy that Blender's exchange formats take for light of any colour [lm/W]."""
 
 REFLECTANCE_WITHOUT_MATERIAL = 0.5
+
+_SINGLE_PRECISION = 1e-6
 
 MIRROR_ROUGHNESS = 0.2
 """Metal at most this rough counts as a mirror."""
@@ -90,11 +92,11 @@ def read(material: bpy.types.Material | None) -> Optics:
 def _custom(settings: bpy.types.PropertyGroup) -> Optics:
     transmittance, exitance = as_typed(settings.regular_transmittance), as_typed(settings.exitance)
     if settings.use_refractive_index:
-        return Optics(
-            regular_transmittance=transmittance,
-            exitance=exitance,
-            refractive_index=as_typed(settings.refractive_index),
-        )
+        index = as_typed(settings.refractive_index)
+        clearest = _clearest(index)
+        if transmittance < clearest * (1.0 + _SINGLE_PRECISION):
+            transmittance = min(transmittance, clearest)
+        return Optics(regular_transmittance=transmittance, exitance=exitance, refractive_index=index)
     return Optics(
         as_typed(settings.diffuse_reflectance), as_typed(settings.specular_reflectance), transmittance, exitance
     )
@@ -128,7 +130,7 @@ def notices(material: bpy.types.Material, optics: Optics) -> list[Notice]:
         optics.material()
     except luz.SceneError as error:
         text = rpt_("Material '{name}': {error}. See Properties > Material > LuzEspecular")
-        remarks.append(Notice("ERROR", text.format(name=material.name, error=error)))
+        remarks.append(Notice("ERROR", text.format(name=material.name, error=str(error).removeprefix("Material: "))))
     return remarks
 
 
@@ -195,8 +197,13 @@ def _principled(inputs: _Inputs) -> Optics:
 def _pane(colour: float, index: float) -> Optics:
     if index <= 1.0:
         return Optics(regular_transmittance=colour)
+    return Optics(regular_transmittance=colour * _clearest(index), refractive_index=index)
+
+
+def _clearest(index: float) -> float:
+    """Return what a pane that absorbs nothing transmits at normal incidence, the inner reflections included."""
     interface = normal_interface_reflectance(index)
-    return Optics(regular_transmittance=colour * (1.0 - interface) / (1.0 + interface), refractive_index=index)
+    return (1.0 - interface) / (1.0 + interface)
 
 
 def _exitance(colour: float, strength: float) -> float:

@@ -132,9 +132,7 @@ def new_triangle_mesh(name: str, vertices: NDArray) -> bpy.types.Mesh:
     mesh.polygons.add(count)
     if count:
         corners = np.arange(3 * count, dtype=np.int32)
-        mesh.attributes["position"].data.foreach_set(
-            "vector", np.ascontiguousarray(vertices, np.float32).reshape(-1)
-        )
+        mesh.attributes["position"].data.foreach_set("vector", np.ascontiguousarray(vertices, np.float32).reshape(-1))
         mesh.loops.foreach_set("vertex_index", corners)
         mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(corners[::3]))
         mesh.update(calc_edges=True)

@@ -1,8 +1,7 @@
 """The buttons: solve, cancel, clear, copy a shader's values, save the table."""
 
-from __future__ import annotations
-
 from pathlib import Path
+from typing import ClassVar
 
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
@@ -18,11 +17,12 @@ _TICK = 0.05  # seconds between looks at the solver
 
 
 class LUZESPECULAR_OT_solve(bpy.types.Operator):
-    """Calculate the daylight of the scene and show it in false colours"""
+    """Calculate the daylight of the scene and show it in false colours."""
 
     bl_idname = "luzespecular.solve"
     bl_label = "Solve"
-    bl_options = {"UNDO"}
+    bl_description = "Calculate the daylight of the scene and show it in false colours"
+    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     _job: Job | None = None
     _timer: bpy.types.Timer | None = None
@@ -129,10 +129,11 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
 
 
 class LUZESPECULAR_OT_cancel(bpy.types.Operator):
-    """Stop the calculation; nothing is changed"""
+    """Stop the calculation; nothing is changed."""
 
     bl_idname = "luzespecular.cancel"
     bl_label = "Cancel"
+    bl_description = "Stop the calculation; nothing is changed"
 
     @classmethod
     def poll(cls, context):
@@ -146,11 +147,12 @@ class LUZESPECULAR_OT_cancel(bpy.types.Operator):
 
 
 class LUZESPECULAR_OT_clear_results(bpy.types.Operator):
-    """Remove all results from the scene: attributes, colours, the fine faces and the tables"""
+    """Remove all results from the scene: attributes, colours, the fine faces and the tables."""
 
     bl_idname = "luzespecular.clear_results"
     bl_label = "Clear Results"
-    bl_options = {"UNDO"}
+    bl_description = "Remove all results from the scene: attributes, colours, the fine faces and the tables"
+    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     @classmethod
     def poll(cls, context):
@@ -167,11 +169,12 @@ class LUZESPECULAR_OT_clear_results(bpy.types.Operator):
 
 
 class LUZESPECULAR_OT_values_from_shader(bpy.types.Operator):
-    """Copy the values that the shader stands for, to change them by hand"""
+    """Copy the values that the shader stands for, to change them by hand."""
 
     bl_idname = "luzespecular.values_from_shader"
     bl_label = "Copy from Shader"
-    bl_options = {"UNDO"}
+    bl_description = "Copy the values that the shader stands for, to change them by hand"
+    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     @classmethod
     def poll(cls, context):
@@ -193,10 +196,11 @@ class LUZESPECULAR_OT_values_from_shader(bpy.types.Operator):
 
 
 class LUZESPECULAR_OT_save_table(bpy.types.Operator, ExportHelper):
-    """Save the table of surfaces as a CSV file"""
+    """Save the table of surfaces as a CSV file."""
 
     bl_idname = "luzespecular.save_table"
     bl_label = "Save Table"
+    bl_description = "Save the table of surfaces as a CSV file"
 
     filename_ext = ".csv"
     filter_glob: bpy.props.StringProperty(default="*.csv", options={"HIDDEN"})
@@ -212,7 +216,9 @@ class LUZESPECULAR_OT_save_table(bpy.types.Operator, ExportHelper):
     def execute(self, context):
         """Write the file."""
         rows = (
-            tables.surface_row(tables.SurfaceStatistics(row.name, row.side, row.area, row.minimum, row.mean, row.maximum))
+            tables.surface_row(
+                tables.SurfaceStatistics(row.name, row.side, row.area, row.minimum, row.mean, row.maximum)
+            )
             for row in context.scene.luzespecular.results.rows
         )
         try:

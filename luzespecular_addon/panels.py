@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
@@ -22,6 +24,7 @@ class LUZESPECULAR_PT_solve(_Sidebar, bpy.types.Panel):
     """Solve, progress and cancel."""
 
     bl_label = "LuzEspecular"
+    bl_description = "Solve, progress and cancel"
     bl_idname = "LUZESPECULAR_PT_solve"
 
     def draw(self, context):
@@ -49,6 +52,7 @@ class LUZESPECULAR_PT_site(_Sidebar, bpy.types.Panel):
     """Place, date and hour."""
 
     bl_label = "Site & Time"
+    bl_description = "Place, date and hour"
     bl_idname = "LUZESPECULAR_PT_site"
 
     def draw(self, context):
@@ -77,6 +81,7 @@ class LUZESPECULAR_PT_sky(_Sidebar, bpy.types.Panel):
     """Sky, Sun and ground."""
 
     bl_label = "Sky"
+    bl_description = "Sky, Sun and ground"
     bl_idname = "LUZESPECULAR_PT_sky"
 
     def draw(self, context):
@@ -100,8 +105,9 @@ class LUZESPECULAR_PT_surfaces(_Sidebar, bpy.types.Panel):
     """The part the active object plays."""
 
     bl_label = "Surfaces"
+    bl_description = "The part the active object plays"
     bl_idname = "LUZESPECULAR_PT_surfaces"
-    bl_options = {"DEFAULT_CLOSED"}
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         """Draw the panel."""
@@ -137,6 +143,7 @@ class LUZESPECULAR_PT_results(_Sidebar, bpy.types.Panel):
     """What is shown, and the table of surfaces."""
 
     bl_label = "Results"
+    bl_description = "What is shown, and the table of surfaces"
     bl_idname = "LUZESPECULAR_PT_results"
 
     def draw(self, context):
@@ -175,6 +182,7 @@ class LUZESPECULAR_PT_material(bpy.types.Panel):
     """Photometric values of the active material."""
 
     bl_label = "LuzEspecular"
+    bl_description = "Photometric values of the active material"
     bl_idname = "LUZESPECULAR_PT_material"
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
@@ -267,7 +275,8 @@ def _draw_table(layout: bpy.types.UILayout, results: bpy.types.PropertyGroup) ->
 
 def _draw_wrapped(column: bpy.types.UILayout, text: str, icon: str, width: float) -> None:
     """Draw a text on as many lines as the region's width asks for, since labels do not wrap."""
-    letters = max(int(width / (7.0 * bpy.context.preferences.system.ui_scale)) - 6, 20)
+    size = bpy.context.preferences.system.ui_scale or 1.0  # 0 without a window
+    letters = max(int(width / (7.0 * size)) - 6, 20)
     line = ""
     for word in text.split():
         if line and len(line) + 1 + len(word) > letters:

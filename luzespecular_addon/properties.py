@@ -273,7 +273,11 @@ class LuzAccuracySettings(bpy.types.PropertyGroup):
         default="NORMAL",
     )
     bands: IntProperty(
-        name="Bands", description="Bands of the globe from zenith to nadir; 60 make 5,902 parcels", min=6, max=360, default=60
+        name="Bands",
+        description="Bands of the globe from zenith to nadir; 60 make 5,902 parcels",
+        min=6,
+        max=360,
+        default=60,
     )
     max_area: FloatProperty(
         name="Largest Face (m²)",
@@ -291,7 +295,11 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
         name="Show On",
         description="What carries the false colours in the viewport",
         items=(
-            ("RESULTS", "Fine Faces", "A separate object that holds the solver's own fine faces; your objects are hidden meanwhile"),
+            (
+                "RESULTS",
+                "Fine Faces",
+                "A separate object that holds the solver's own fine faces; your objects are hidden meanwhile",
+            ),
             ("OWN", "Own Meshes", "Your own faces, each with its mean illuminance"),
         ),
         default="RESULTS",
@@ -324,7 +332,11 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
         name="From (lx)", description="Illuminance at the low end of the scale", min=0.0, default=10.0, update=_recolour
     )
     high: FloatProperty(
-        name="To (lx)", description="Illuminance at the high end of the scale", min=0.001, default=10_000.0, update=_recolour
+        name="To (lx)",
+        description="Illuminance at the high end of the scale",
+        min=0.001,
+        default=10_000.0,
+        update=_recolour,
     )
     show_legend: BoolProperty(name="Legend", description="Draw the legend in the 3D viewport", default=True)
 

@@ -1,4 +1,4 @@
-"""The object *LuzEspecular results*: the solver's own fine faces with every quantity, backs as faces that look backwards."""
+"""The object *LuzEspecular results*: the solver's fine faces with every quantity; backs are faces that look back."""
 
 from __future__ import annotations
 

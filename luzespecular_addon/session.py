@@ -1,4 +1,4 @@
-"""The transfer prepared last, kept for as long as Blender runs, so that another hour or sky needs no new preparation."""
+"""The transfer prepared last, kept while Blender runs, so that another hour or sky needs no new preparation."""
 
 from __future__ import annotations
 

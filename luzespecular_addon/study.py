@@ -76,7 +76,7 @@ def collect(context: bpy.types.Context) -> Study:
     exported = export.export_scene(context)
     if daylight.sky is None and daylight.sun is None and not exported.luminous:
         raise refuse(
-            rpt_("There is no light: the Sun is down or off, there is no sky, and no surface is luminous. Set hour or sky")
+            rpt_("There is no light: the Sun is down or off, there is no sky, no surface is luminous. Set hour or sky")
         )
     return Study(
         exported,
@@ -96,7 +96,7 @@ def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> None
         Where the scene changed meanwhile; nothing is written then.
     """
     scene = context.scene
-    if export.export_scene(context, track_faces=False).fingerprint != study.export.fingerprint:
+    if export.current_fingerprint(context) != study.export.fingerprint:
         raise refuse(rpt_("The scene changed while it was solved, so the results were thrown away: solve again"))
     own = writeback.own_results(study.export, result)
     results_object.create(scene, study.export, result)

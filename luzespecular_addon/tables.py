@@ -58,9 +58,7 @@ def surface_statistics(result: luz.Result, names: Iterable[str]) -> list[Surface
     for name, label, side, faces in computed_faces(result, names):
         values, areas = side.illuminance[faces], side.areas[faces]
         mean = float(np.average(values, weights=areas))
-        rows.append(
-            SurfaceStatistics(name, label, float(areas.sum()), float(values.min()), mean, float(values.max()))
-        )
+        rows.append(SurfaceStatistics(name, label, float(areas.sum()), float(values.min()), mean, float(values.max())))
     return rows
 
 
@@ -79,7 +77,7 @@ def surface_row(row: SurfaceStatistics) -> tuple[str, ...]:
 
 
 def face_rows(result: luz.Result, names: Iterable[str]) -> tuple[list[str], Iterator[list[str]]]:
-    """Return header and rows of the solver's faces: surface, side, centroid [m], normal, area [m²], illuminances [lx]."""
+    """Return header and rows of the solver's faces: surface, side, centroid [m], normal, area [m²], lux by origin."""
     header = ["surface", "side", "x_m", "y_m", "z_m", "normal_x", "normal_y", "normal_z", "area_m2"]
     header += [f"{quantity}_lx" for quantity in quantities(result.front)]
 

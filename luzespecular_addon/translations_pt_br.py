@@ -28,12 +28,12 @@ _PANELS = {
     "Sky": "Céu",
     "Surfaces": "Superfícies",
     "Results": "Resultados",
-    "Solve, progress and cancel.": "Calcular, andamento e cancelar.",
-    "Place, date and hour.": "Lugar, data e hora.",
-    "Sky, Sun and ground.": "Céu, Sol e solo.",
-    "The part the active object plays.": "O papel do objeto ativo.",
-    "What is shown, and the table of surfaces.": "O que é mostrado, e a tabela das superfícies.",
-    "Photometric values of the active material.": "Valores fotométricos do material ativo.",
+    "Solve, progress and cancel": "Calcular, andamento e cancelar",
+    "Place, date and hour": "Lugar, data e hora",
+    "Sky, Sun and ground": "Céu, Sol e solo",
+    "The part the active object plays": "O papel do objeto ativo",
+    "What is shown, and the table of surfaces": "O que é mostrado, e a tabela das superfícies",
+    "Photometric values of the active material": "Valores fotométricos do material ativo",
     "Black: absorbs all light": "Preto: absorve toda a luz",
     "Select an object to set its role": "Selecione um objeto para definir seu papel",
     "No results yet": "Ainda não há resultados",
@@ -126,7 +126,7 @@ _SKY = {
     "No gradation, distinct solar corona": "Sem gradação, coroa solar nítida",
     "9 Partly cloudy, Sun obscured": "9 Parcialmente nublado, Sol encoberto",
     "With the obscured Sun": "Com o Sol encoberto",
-    "10 Partly cloudy, graded, brighter around the Sun": "10 Parcialmente nublado, graduado, mais claro ao redor do Sol",
+    "10 Partly cloudy, graded, brighter around the Sun": "10 Parcialmente nublado, graduado, claro ao redor do Sol",
     "With a brighter circumsolar region": "Com a região circunsolar mais clara",
     "11 White-blue, solar corona": "11 Azul-esbranquiçado, coroa solar",
     "White-blue sky with distinct solar corona": "Céu azul-esbranquiçado com coroa solar nítida",
@@ -279,9 +279,9 @@ _DISPLAY = {
     "Steps": "Passos",
     "How values are spread over the colours": "Como os valores se distribuem pelas cores",
     "Logarithmic": "Logarítmica",
-    "Equal ratios are equally far apart, as the eye judges": "Razões iguais ficam igualmente distantes, como o olho julga",
+    "Equal ratios are equally far apart, as the eye judges": "Razões iguais ficam equidistantes, como o olho julga",
     "Linear": "Linear",
-    "Equal differences are equally far apart": "Diferenças iguais ficam igualmente distantes",
+    "Equal differences are equally far apart": "Diferenças iguais ficam equidistantes",
     "Fixed Range": "Intervalo fixo",
     "Keep the ends of the scale instead of fitting them": "Manter os extremos da escala em vez de ajustá-los",
     "From (lx)": "De (lx)",
@@ -323,7 +323,7 @@ _NOTICES = {
     "The Sun is below the horizon ({altitude:.1f}°): there is no sunlight, only the sky is solved": (
         "O Sol está abaixo do horizonte ({altitude:.1f}°): não há luz solar, só o céu é calculado"
     ),
-    "There is no light: the Sun is down or off, there is no sky, and no surface is luminous. Set hour or sky": (
+    "There is no light: the Sun is down or off, there is no sky, no surface is luminous. Set hour or sky": (
         "Não há luz: o Sol está abaixo do horizonte ou desligado, não há céu e nenhuma superfície é luminosa. "
         "Ajuste a hora ou o céu"
     ),
@@ -363,8 +363,8 @@ _NOTICES = {
         "O objeto '{name}' é um vidro sólido: a luz atravessa duas de suas faces, e a reflexão especular do vidro é "
         "desprezada. Modele o vidro com faces simples para resultados exatos"
     ),
-    "Object '{name}' has an attribute '{attribute}' of its own, which results would overwrite: rename it": (
-        "O objeto '{name}' tem um atributo próprio '{attribute}', que os resultados sobrescreveriam: renomeie-o"
+    "Object '{name}' has an attribute '{attribute}' that results would overwrite: rename it": (
+        "O objeto '{name}' tem um atributo '{attribute}' que os resultados sobrescreveriam: renomeie-o"
     ),
     "Without material, so a diffuse reflectance of {value:g} is used: {names}": (
         "Sem material, por isso é usada uma refletância difusa de {value:g}: {names}"

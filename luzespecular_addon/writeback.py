@@ -1,8 +1,8 @@
-"""From the solver back to the user's own meshes: lux per face as an attribute, and everything that is needed to undo it.
+"""From the solver back to the user's own meshes: lux per face as an attribute, and all that is needed to undo it.
 
-A face of the user's mesh gets the area-weighted mean of all solver faces that come from it, whether the modifiers cut it,
-copied it or left it alone. Faces without a value hold NaN. A mesh that several objects share cannot hold several results:
-those objects have theirs on the fine faces only.
+A face of the user's mesh gets the area-weighted mean of all solver faces that come from it, whether the modifiers cut
+it, copied it or left it alone. Faces without a value hold NaN. A mesh that several objects share cannot hold several
+results: those objects have theirs on the fine faces only.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from .. import core as luz
 from ..core.result import Side
-from . import mesh_arrays
+from . import mesh_arrays, participants
 from .export import Export, ExportedSurface
 from .notices import Notice
 
@@ -56,19 +56,17 @@ def refusals(objects: Iterable[bpy.types.Object]) -> list[Notice]:
     notices = []
     for object_ in objects:
         mesh = object_.data
-        if object_.type != "MESH" or mesh.luzespecular.has_results:
+        if object_.type != "MESH" or mesh.luzespecular.has_results or not participants.takes_part(object_):
             continue
         for name in _NAMES:
             if name in mesh.attributes:
-                text = rpt_(
-                    "Object '{name}' has an attribute '{attribute}' of its own, which results would overwrite: rename it"
-                )
+                text = rpt_("Object '{name}' has an attribute '{attribute}' that results would overwrite: rename it")
                 notices.append(Notice("ERROR", text.format(name=object_.name, attribute=name)))
     return notices
 
 
 def own_results(export: Export, result: luz.Result) -> list[OwnResults]:
-    """Return the illuminance of each user mesh that can hold results, the area-weighted mean over what became of a face."""
+    """Return the illuminance of each user mesh that can hold results: means over all that became of a face."""
     by_object: dict[str, list[ExportedSurface]] = {}
     for surface in export.surfaces:
         if surface.receiver and surface.own_faces is not None:

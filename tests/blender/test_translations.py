@@ -65,10 +65,10 @@ def interface_texts():
                         texts.add(("*", _literal(keyword.value)))
             if isinstance(node, ast.ClassDef):
                 operator = "_OT_" in node.name
-                if operator or "_PT_" in node.name:  # Blender shows their docstrings as tooltips
-                    texts.add(("*", ast.get_docstring(node)))
                 for statement in node.body:
                     targets = [t.id for t in getattr(statement, "targets", []) if isinstance(t, ast.Name)]
+                    if "bl_description" in targets:
+                        texts.add(("*", _literal(statement.value)))
                     if "bl_label" in targets:
                         texts.add(("Operator" if operator else "*", _literal(statement.value)))
         if path.name == "properties.py":

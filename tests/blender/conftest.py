@@ -1,0 +1,130 @@
+"""Blender for the tests: its Python module with the built extension, back at factory settings for each test."""
+
+import importlib
+import importlib.util
+import sys
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = "bl_ext.user_default.luzespecular"
+ROOMS = (
+    "colours",
+    "commands",
+    "display",
+    "export",
+    "job",
+    "legend",
+    "light",
+    "materials",
+    "mesh_arrays",
+    "notices",
+    "operators",
+    "results_object",
+    "session",
+    "study",
+    "tables",
+    "translations",
+    "writeback",
+)
+
+if importlib.util.find_spec("bpy") is None:
+    collect_ignore_glob = ["test_*.py"]
+
+
+def pytest_report_header():
+    if importlib.util.find_spec("bpy") is None:
+        return "Blender tests: left out, Blender's Python module (bpy) is not installed"
+    return None
+
+
+@pytest.fixture(scope="session")
+def blender():
+    """Blender with its user files in a folder of the tests' own, and the extension installed from its zip."""
+    sys.path.insert(0, str(ROOT / "tools"))
+    try:
+        import blender_session
+    finally:
+        sys.path.pop(0)
+    folder = tempfile.TemporaryDirectory(prefix="luzespecular tests é ", ignore_cleanup_errors=True)
+    blender_session.start(Path(folder.name))
+    import bpy
+
+    yield bpy
+    folder.cleanup()
+
+
+@pytest.fixture
+def bpy(blender):
+    """Blender at factory settings with an empty scene and the extension enabled."""
+    import addon_utils
+
+    blender.ops.wm.read_factory_settings(use_empty=True)
+    addon_utils.enable(PACKAGE, default_set=True)
+    yield blender
+    addon_utils.disable(PACKAGE, default_set=True)
+
+
+@pytest.fixture
+def addon(bpy):
+    """The extension's rooms by name, and the solver as `luz`."""
+    rooms = {name: importlib.import_module(f"{PACKAGE}.luzespecular_addon.{name}") for name in ROOMS}
+    return SimpleNamespace(luz=importlib.import_module(f"{PACKAGE}.core"), **rooms)
+
+
+@pytest.fixture
+def make(bpy):
+    """Makers of scene contents."""
+    return Maker(bpy)
+
+
+class Maker:
+    """Makes objects with few words."""
+
+    def __init__(self, bpy):
+        self._bpy = bpy
+
+    def mesh(self, name, vertices, faces, material=None):
+        """An object of the given vertices and faces, linked to the scene."""
+        mesh = self._bpy.data.meshes.new(name)
+        mesh.from_pydata(vertices, [], faces)
+        return self.object(name, mesh, material)
+
+    def object(self, name, data, material=None):
+        """An object of the given data, linked to the scene."""
+        made = self._bpy.data.objects.new(name, data)
+        self._bpy.context.scene.collection.objects.link(made)
+        if material is not None:
+            data.materials.append(material)
+        return made
+
+    def square(self, name="Square", size=1.0, height=0.0, material=None):
+        """A horizontal square that looks up, one corner at the origin."""
+        corners = [(0, 0, height), (size, 0, height), (size, size, height), (0, size, height)]
+        return self.mesh(name, corners, [(0, 1, 2, 3)], material)
+
+    def cube(self, name="Cube", size=1.0, material=None):
+        """A closed cube that looks outwards, one corner at the origin."""
+        corners = [(x, y, z) for z in (0, size) for y in (0, size) for x in (0, size)]
+        faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+        return self.mesh(name, corners, faces, material)
+
+    def material(self, name="Paint", **values):
+        """A material with our own photometric values."""
+        made = self._bpy.data.materials.new(name)
+        made.luzespecular.source = "CUSTOM"
+        for key, value in values.items():
+            setattr(made.luzespecular, key, value)
+        return made
+
+    def quick(self, max_area=1e6, bands=12):
+        """Settings that solve in a moment: uniform sky of 10,000 lx, a coarse globe, faces as given."""
+        settings = self._bpy.context.scene.luzespecular
+        settings.sky.kind, settings.sky.cie_type, settings.sky.horizontal_illuminance = "CIE", "5", 10_000.0
+        settings.sky.use_sun, settings.sky.ground_reflectance = False, 0.0
+        settings.accuracy.fineness, settings.accuracy.bands = "EXPERT", bands
+        settings.accuracy.max_area = max_area
+        return settings
