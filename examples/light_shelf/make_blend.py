@@ -126,7 +126,7 @@ def apply_settings(settings) -> None:
     sky.kind, sky.cie_type, sky.horizontal_illuminance = "CIE", "12", room.SKY_ILLUMINANCE
     sky.use_sun, sky.sun_illuminance = True, room.SUN_ILLUMINANCE
     accuracy.fineness, accuracy.bands, accuracy.max_area = "EXPERT", 60, LARGEST_FACE
-    display.use_fixed_range, display.low, display.high = True, 100.0, 100_000.0
+    display.use_fixed_range, display.low, display.high = True, 200.0, 100_000.0
 
 
 def set_view(space) -> None:

@@ -44,7 +44,7 @@ def test_uniform_sky_just_inside_the_pane(example):
     sky = luz.Daylight(sky=luz.UniformSky(1_000))
     angles = (np.arange(2000) + 0.5) * math.pi / 4000
     through = np.array([pane_transmittance(a, study.INDEX, study.NORMAL_TRANSMITTANCE) for a in angles])
-    hemispherical = float(np.sum(through * np.sin(2 * angles)) * math.pi / 2000)
+    hemispherical = float(np.sum(through * np.sin(2 * angles)) * math.pi / 4000)
     result = luz.prepare(study.room(True), max_area=0.2).solve(sky, cycles=0)
     found = result.at([[2.0, 4.999, 1.7]], [[0, 1, 0]])[0]
     assert found == pytest.approx(math.pi * 1_000 / 2 * hemispherical, rel=5e-3)
