@@ -145,16 +145,15 @@ class PerezSky(Sky):
     Raises
     ------
     SceneError
-        A Sun below the horizon, no diffuse irradiance, a negative one, NaN, or values so far from any weather that
-        the model gives no positive luminance.
+        A Sun below the horizon, no diffuse irradiance, a negative one, NaN.
 
     Notes
     -----
     L ∝ (1 + a·exp(b / sin γ))·(1 + c·exp(d·χ) + e·cos² χ), γ the altitude of the direction and χ its angle from the
     Sun. ε is limited to 1 to 12, Δ to 0.01 to 0.6, and for ε from 1.065 to 2.8 to 0.2 at least (Perez et al. 1993).
-    sin γ counts as 0.01 at least. Two limits are ours, for weather far from the model's own data: b is 0 at most
-    (above, all light would gather in the last degree over the horizon, which happens with a clear Sun below 5°),
-    and a factor that would be negative is 0.
+    sin γ counts as 0.01 at least. Two rules are ours, for weather far from the model's own data: the gradation is left
+    out (a = b = 0) where b is not negative, since all light would then gather in the last degree over the horizon, as
+    with a clear Sun below 5°, and where the zenith would be dark; a negative second factor counts as 0.
     """
 
     direct_normal_irradiance: float
@@ -173,18 +172,12 @@ class PerezSky(Sky):
         clearness = sky_clearness(direct, diffuse, zenith_angle)
         brightness = sky_brightness(diffuse, zenith_angle, self._outside_irradiance())
         water = precipitable_water(self.dew_point)
-        a, b, *of_indicatrix = perez_coefficients(clearness, brightness, zenith_angle)
-        coefficients = (a, min(b, 0.0), *of_indicatrix)
+        coefficients = _with_sound_gradation(perez_coefficients(clearness, brightness, zenith_angle))
         if self.horizontal_illuminance is None:
             horizontal = diffuse * diffuse_efficacy(clearness, brightness, zenith_angle, water)
         else:
             horizontal = self.horizontal_illuminance
         relative = _relative_horizontal_illuminance(coefficients, self.sun_altitude)
-        if not relative > 1e-6:
-            raise SceneError(
-                f"PerezSky: the model gives no sky for direct {direct:g} and diffuse {diffuse:g} W/m² with the Sun at "
-                f"{self.sun_altitude:g}°; check the irradiances, or use a CIESky"
-            )
         for name, value in (
             ("horizontal_illuminance", horizontal),
             ("clearness", clearness),
@@ -311,9 +304,16 @@ def _clearness_class(clearness: float) -> int:
     return int(np.searchsorted(_CLASS_LIMITS, np.clip(clearness, *_CLEARNESS_RANGE), side="right"))
 
 
+def _with_sound_gradation(coefficients: tuple[float, ...]) -> tuple[float, ...]:
+    """The coefficients; a and b 0 where the gradation would run away at the horizon or make the zenith dark."""
+    a, b, *of_indicatrix = coefficients
+    sound = b < 0 and 1 + a * np.exp(b) > 0
+    return (a if sound else 0.0, b if sound else 0.0, *of_indicatrix)
+
+
 def _gradation(coefficients, sines: np.ndarray) -> np.ndarray:
     a, b = coefficients[:2]
-    return np.maximum(1 + a * np.exp(b / np.maximum(sines, LOWEST_SINE)), 0.0)
+    return 1 + a * np.exp(b / np.maximum(sines, LOWEST_SINE))
 
 
 def _indicatrix(coefficients, angles: np.ndarray) -> np.ndarray:
@@ -323,10 +323,6 @@ def _indicatrix(coefficients, angles: np.ndarray) -> np.ndarray:
 
 def _relative_horizontal_illuminance(coefficients, sun_altitude: float) -> float:
     """Integral of the relative distribution over the upper hemisphere, weighted by the sine of the altitude [sr]."""
-    a, b = coefficients[:2]
-    levels = [LOWEST_SINE]
-    if a < -1 and LOWEST_SINE < -b / np.log(-a) < 1:
-        levels.append(float(-b / np.log(-a)))  # there the gradation meets 0
     angles = np.linspace(0.0, np.pi, 361)
     c, d, e = coefficients[2:]
     signs = np.sign(1 + c * np.exp(d * angles) + e * np.cos(angles) ** 2)
@@ -336,7 +332,7 @@ def _relative_horizontal_illuminance(coefficients, sun_altitude: float) -> float
         lambda sines: _gradation(coefficients, sines),
         lambda chi: _indicatrix(coefficients, chi),
         sun_altitude,
-        gradation_breaks=tuple(levels),
+        gradation_breaks=(LOWEST_SINE,),
         indicatrix_breaks=zeros,
     )
 

@@ -238,7 +238,8 @@ def sunrise_sunset(
         checked_number(latitude, "latitude", low=-90.0, high=90.0, remedy="give degrees, north positive")
     )
     longitude = checked_number(longitude, "longitude", low=-360.0, high=360.0, remedy="give degrees, east positive")
-    crossing = np.radians(checked_number(altitude, "altitude", low=-90.0, high=90.0))
+    altitude = checked_number(altitude, "altitude", low=-90.0, high=90.0)
+    crossing = np.radians(altitude + HORIZONTAL_PARALLAX * np.cos(np.radians(altitude)))
     if not isinstance(date, dt.date):
         raise SceneError(f"date must be a datetime.date, not {date!r}; write datetime.date(2024, 6, 21)")
     mean_noon = np.datetime64(dt.datetime(date.year, date.month, date.day, 12), "us") - _as_timedelta(longitude / 360.0)
