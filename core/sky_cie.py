@@ -87,8 +87,9 @@ class CIESky(Sky):
     kind: int
     sun_altitude: float | None = field(default=None, kw_only=True)
     sun_azimuth: float | None = field(default=None, kw_only=True)
-    horizontal_illuminance: float | None = field(default=None, kw_only=True)
-    zenith_luminance: float | None = field(default=None, kw_only=True)
+    # None until __post_init__ has filled in the one that was not given
+    horizontal_illuminance: float = field(default=None, kw_only=True)  # type: ignore[assignment]
+    zenith_luminance: float = field(default=None, kw_only=True)  # type: ignore[assignment]
 
     def __post_init__(self):
         if isinstance(self.kind, bool) or not isinstance(self.kind, int | np.integer) or self.kind not in CIE_SKY_NAMES:
@@ -149,16 +150,16 @@ class CIESky(Sky):
 
     def _zenith_value(self) -> float:
         """φ(90°)·f(Zs), what the formula gives for the zenith before scaling."""
-        gradation = float(self._gradation(np.float64(1.0)))
-        return (
-            gradation * float(self._indicatrix(np.radians(90.0 - self.sun_altitude))) if self.needs_sun else gradation
-        )
+        gradation = float(self._gradation(np.array(1.0)))
+        if self.sun_altitude is None or not self.needs_sun:
+            return gradation
+        return gradation * float(self._indicatrix(np.array(np.radians(90.0 - self.sun_altitude))))
 
     def _relative_horizontal_illuminance(self) -> float:
-        if self.needs_sun:
-            integral = horizontal_integral(self._gradation, self._indicatrix, self.sun_altitude)
-        else:
+        if self.sun_altitude is None or not self.needs_sun:
             integral = horizontal_integral(self._gradation)
+        else:
+            integral = horizontal_integral(self._gradation, self._indicatrix, self.sun_altitude)
         return integral / self._zenith_value()
 
 

@@ -8,7 +8,7 @@ distribution.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -163,7 +163,12 @@ class PerezSky(Sky):
     day_of_year: float | None = None
     extraterrestrial_irradiance: float | None = None
     dew_point: float = 11.0
-    horizontal_illuminance: float | None = None
+    horizontal_illuminance: float = None  # type: ignore[assignment]  # filled in by __post_init__
+    clearness: float = field(init=False, compare=False)
+    brightness: float = field(init=False, compare=False)
+    coefficients: tuple[float, ...] = field(init=False, compare=False)
+    direct_normal_illuminance: float = field(init=False, compare=False)
+    _scale: float = field(init=False, compare=False, repr=False)
 
     def __post_init__(self):
         self._check()
@@ -339,10 +344,10 @@ def _relative_horizontal_illuminance(coefficients, sun_altitude: float) -> float
 
 def _bisected(coefficients, low: float, high: float) -> float:
     """Angle between `low` and `high` at which the indicatrix leaves 0."""
-    positive_at_low = _indicatrix(coefficients, low) > 0
+    positive_at_low = _indicatrix(coefficients, np.array(low)) > 0
     for _ in range(50):
         middle = (low + high) / 2
-        if (_indicatrix(coefficients, middle) > 0) == positive_at_low:
+        if (_indicatrix(coefficients, np.array(middle)) > 0) == positive_at_low:
             low = middle
         else:
             high = middle

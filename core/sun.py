@@ -56,10 +56,11 @@ class Sun:
 
     ANGULAR_DIAMETER: ClassVar[float] = 0.533  #: [degrees], mean over the year
 
-    altitude: float | None = None
-    azimuth: float | None = None
+    # None until __post_init__ has filled in what was not given
+    altitude: float = None  # type: ignore[assignment]
+    azimuth: float = None  # type: ignore[assignment]
     normal_illuminance: float
-    direction: tuple[float, float, float] | None = None
+    direction: tuple[float, float, float] = None  # type: ignore[assignment]
     disc: bool = False
 
     def __post_init__(self):
@@ -243,7 +244,7 @@ def sunrise_sunset(
     if not isinstance(date, dt.date):
         raise SceneError(f"date must be a datetime.date, not {date!r}; write datetime.date(2024, 6, 21)")
     mean_noon = np.datetime64(dt.datetime(date.year, date.month, date.day, 12), "us") - _as_timedelta(longitude / 360.0)
-    return tuple(_crossing_time(latitude, crossing, mean_noon, side) for side in (-1, 1))
+    return _crossing_time(latitude, crossing, mean_noon, -1), _crossing_time(latitude, crossing, mean_noon, 1)
 
 
 def _crossing_time(latitude: float, crossing: float, mean_noon: np.datetime64, side: int) -> dt.datetime | None:
@@ -257,7 +258,9 @@ def _crossing_time(latitude: float, crossing: float, mean_noon: np.datetime64, s
         half_day = np.arccos(np.clip(cosine, -1.0, 1.0)) / (2 * np.pi)
         minutes = float(_equation_of_time(days, sun.greenwich_hour_angle))
         instant = mean_noon + _as_timedelta(side * half_day - minutes / 1440.0)
-    return instant.item().replace(tzinfo=dt.UTC) if abs(cosine) <= 1.0 else None
+    if abs(cosine) > 1.0:
+        return None
+    return dt.datetime.fromisoformat(str(instant)).replace(tzinfo=dt.UTC)
 
 
 def _sun_direction(altitude, azimuth, direction) -> tuple[float, float, tuple[float, float, float]]:
