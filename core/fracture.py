@@ -249,7 +249,7 @@ class Patches:
     grid: np.ndarray
 
 
-def make_patches(planes: Planes, centroids, element_sheet, element_active, areas, target: int) -> Patches:
+def make_patches(planes: Planes, elements, element_sheet, element_active, areas, target: int) -> Patches:
     """Gather elements into patches of about equal area.
 
     Sheets large enough get a grid of cells; small ones (curved meshes) are gathered by place, facing and surface.
@@ -257,7 +257,7 @@ def make_patches(planes: Planes, centroids, element_sheet, element_active, areas
     Parameters
     ----------
     planes : Planes
-    centroids : (e, 3) float
+    elements : (e, 3, 3) float
     element_sheet : (e,) int
     element_active : (e,) bool
         Whether the element can emit diffuse light.
@@ -271,6 +271,7 @@ def make_patches(planes: Planes, centroids, element_sheet, element_active, areas
     """
     fronts = len(planes.sheet_surface)
     sheets = 2 * fronts
+    centroids = elements.mean(axis=1)
     of_element = np.full(len(centroids), -1, np.int64)
     origin, scale = np.zeros((sheets, 2)), np.zeros((sheets, 2))
     shape, base = np.ones((sheets, 2), np.int64), np.full(sheets, -1, np.int64)
@@ -293,7 +294,8 @@ def make_patches(planes: Planes, centroids, element_sheet, element_active, areas
         # the outline's extent, not the centroids', so that cells are of even size
         outline = planes.outlines[planes.outline_sheet == sheet % fronts].reshape(-1, 3) @ planes.sheet_axes[sheet % fronts].T
         low, extent = outline.min(axis=0), np.maximum(np.ptp(outline, axis=0), 1e-300)
-        n = np.maximum(1, np.rint(extent / math.sqrt(patch_area))).astype(np.int64)
+        corners = (elements[members] @ planes.sheet_axes[sheet % fronts].T - low) / extent
+        n = np.array([_cells_along(corners[:, :, k], extent[k] / math.sqrt(patch_area)) for k in (0, 1)])
         while n.prod() > 4 * len(members):
             n = np.maximum(1, n // 2)
         origin[sheet], scale[sheet], shape[sheet], base[sheet] = low, n / extent, n, cells
@@ -311,6 +313,19 @@ def make_patches(planes: Planes, centroids, element_sheet, element_active, areas
             grid.append(of_element[order[bounds[k] : bounds[k] + 1]])
             cells += 1
     return Patches(count, of_element, origin, scale, shape, base, np.concatenate(grid))
+
+
+def _cells_along(places: np.ndarray, wanted: float) -> int:
+    """Number of cells along one axis, near ``wanted``: where possible one whose limits no element straddles.
+
+    A patch's mean is then that of just the area that beams find it by.
+    """
+    target = max(1, round(wanted))
+    low, high = places.min(axis=1), places.max(axis=1)
+    for n in sorted(range(max(1, target // 2), 2 * target + 1), key=lambda n: abs(math.log(n / max(wanted, 1e-9)))):
+        if (np.floor(low * n + 1e-6) >= np.floor(high * n - 1e-6)).all():
+            return n
+    return target
 
 
 def _gather_small(planes, centroids, groups, patch_area, of_element, count) -> int:

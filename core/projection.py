@@ -184,7 +184,7 @@ def coverage(distance, width_a, width_b) -> tuple[np.ndarray, np.ndarray]:
     moment : (n,) float
         Share times the distance of its centroid from the rectangle's centre, along the line's normal.
     """
-    floor = 1e-4 * (width_a + width_b)
+    floor = np.maximum(1e-4 * (width_a + width_b), 1e-300)
     p, q = np.maximum(width_a, floor), np.maximum(width_b, floor)
     alpha, beta = 0.5 * (p + q), 0.5 * np.abs(p - q)
     s = np.clip(distance, -alpha, alpha)

@@ -196,7 +196,7 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
     fronts = len(planes.sheet_surface)
     surface = planes.sheet_surface[cuts.element_sheet % fronts]
     normals = planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
-    patches = make_patches(planes, points, cuts.element_sheet, diffuse[surface], cuts.element_areas, PATCHES)
+    patches = make_patches(planes, cuts.elements, cuts.element_sheet, diffuse[surface], cuts.element_areas, PATCHES)
     outline_surface = planes.sheet_surface[planes.outline_sheet]
     outline_normals = planes.sheet_normal[planes.outline_sheet]
     outlines = Outlines(
