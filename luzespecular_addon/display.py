@@ -17,25 +17,22 @@ def show(scene: bpy.types.Scene) -> None:
 
 def recolour(scene: bpy.types.Scene) -> None:
     """Colour the fine faces and the user's meshes anew by the scene's display settings; no lux changes."""
-    fine = results_object.find(scene)
-    meshes = [(mesh, "illuminance") for mesh in writeback.written_meshes(scene)]
-    if fine is not None:
-        meshes.insert(0, (fine.data, scene.luzespecular.display.quantity))
-    values = [mesh_arrays.read_face_values(mesh, quantity, np.float32) for mesh, quantity in meshes]
-    known = [(mesh, found) for (mesh, _), found in zip(meshes, values, strict=True) if found is not None]
-    if not known:
+    quantity = scene.luzespecular.display.quantity
+    fine = _values([object_.data for object_ in results_object.all_of(scene)], quantity)
+    own = _values(writeback.written_meshes(scene), writeback.ILLUMINANCE)
+    if not fine and not own:
         return
-    scale = _scale(scene, *_range_source(scene, known))
-    for mesh, found in known:
+    scale = _scale(scene, fine or own)
+    for mesh, values in [*fine, *own]:
         corners = mesh_arrays.corner_counts(mesh)
-        mesh_arrays.write_corner_colours(mesh, writeback.COLOURS, colours.corner_colours(found, corners, scale))
+        mesh_arrays.write_corner_colours(mesh, writeback.COLOURS, colours.corner_colours(values, corners, scale))
         mesh_arrays.make_colour_active(mesh, writeback.COLOURS)
         mesh.update_tag()
 
 
 def has_results(scene: bpy.types.Scene) -> bool:
     """Whether a scene holds results."""
-    return results_object.find(scene) is not None or bool(writeback.written_meshes(scene))
+    return bool(results_object.all_of(scene) or writeback.written_meshes(scene))
 
 
 def current_scale(scene: bpy.types.Scene) -> colours.ColourScale:
@@ -46,19 +43,20 @@ def current_scale(scene: bpy.types.Scene) -> colours.ColourScale:
 
 def apply_view(scene: bpy.types.Scene) -> None:
     """Show the fine faces in place of the objects they stand for, or those objects themselves, as the settings say."""
-    fine = results_object.find(scene)
-    show_fine = fine is not None and scene.luzespecular.display.view == "RESULTS"
+    settings = scene.luzespecular.display
+    show_fine = settings.view == "RESULTS" and bool(results_object.all_of(scene))
+    shown_sides = {"front", "back"} if settings.show_backs else {"front"}
     standing_for = {row.object_name for row in scene.luzespecular.results.rows} if show_fine else set()
     for object_ in scene.objects:
-        settings = object_.luzespecular
-        if settings.is_results:
-            _set_hidden(scene, object_, not show_fine)
-        elif object_.name in standing_for and not settings.hidden_for_results:
+        role = object_.luzespecular
+        if role.is_results:
+            _set_hidden(scene, object_, not (show_fine and role.results_side in shown_sides))
+        elif object_.name in standing_for and not role.hidden_for_results:
             if _set_hidden(scene, object_, True):
-                settings.hidden_for_results = True
-        elif settings.hidden_for_results and object_.name not in standing_for:
+                role.hidden_for_results = True
+        elif role.hidden_for_results and object_.name not in standing_for:
             _set_hidden(scene, object_, False)
-            settings.property_unset("hidden_for_results")
+            role.property_unset("hidden_for_results")
     if has_results(scene):
         _shade_viewports(scene, backface_culling=show_fine)
 
@@ -74,17 +72,12 @@ def clear(scene: bpy.types.Scene) -> None:
     scene.luzespecular.property_unset("results")
 
 
-def _range_source(scene: bpy.types.Scene, known: list[tuple[bpy.types.Mesh, NDArray]]) -> tuple[NDArray, NDArray]:
-    """Return values and face areas that an automatic range fits: those of the fine faces where there are any."""
-    fine = results_object.find(scene)
-    chosen = known[:1] if fine is not None and known[0][0] == fine.data else known
-    return (
-        np.concatenate([values for _, values in chosen]),
-        np.concatenate([mesh_arrays.polygon_areas(mesh) for mesh, _ in chosen]),
-    )
+def _values(meshes: list[bpy.types.Mesh], quantity: str) -> list[tuple[bpy.types.Mesh, NDArray]]:
+    found = [(mesh, mesh_arrays.read_face_values(mesh, quantity, np.float32)) for mesh in meshes]
+    return [(mesh, values) for mesh, values in found if values is not None]
 
 
-def _scale(scene: bpy.types.Scene, values: NDArray, areas: NDArray) -> colours.ColourScale:
+def _scale(scene: bpy.types.Scene, shown: list[tuple[bpy.types.Mesh, NDArray]]) -> colours.ColourScale:
     settings, results = scene.luzespecular.display, scene.luzespecular.results
     logarithmic = settings.scaling == "LOG"
     if settings.use_fixed_range:
@@ -92,6 +85,8 @@ def _scale(scene: bpy.types.Scene, values: NDArray, areas: NDArray) -> colours.C
         if logarithmic:
             low = max(low, high * colours.LOWEST_SHARE)
     else:
+        values = np.concatenate([values for _, values in shown])
+        areas = np.concatenate([mesh_arrays.polygon_areas(mesh) for mesh, _ in shown])
         low, high = colours.automatic_range(values, areas, logarithmic)
     results.legend_low, results.legend_high = low, high
     return colours.ColourScale(settings.scale, low, high, logarithmic)

@@ -58,7 +58,7 @@ class Export:
     notices : tuple of Notice
         Warnings and notes; errors have been raised.
     area : float
-        Area of all surfaces that scatter light, both sides of two-sided ones [m²].
+        Area of all surfaces that scatter light, one side of each [m²].
     luminous : bool
         Whether any surface emits light by itself.
     unit_scale : float
@@ -171,7 +171,7 @@ class _Builder:
         if part.receiver and own_faces is None and part.kind == "MESH":
             self._sharing.append(part.object_name)
         if optics.diffuse_reflectance > 0.0:
-            self.area += float(areas[sound].sum()) * (2.0 if part.two_sided else 1.0)
+            self.area += float(areas[sound].sum())
         self.luminous |= optics.exitance > 0.0
 
     def notices(self) -> list[Notice]:

@@ -159,9 +159,10 @@ class LUZESPECULAR_PT_results(_Sidebar, bpy.types.Panel):
         column.use_property_split = True
         column.use_property_decorate = False
         column.row().prop(settings, "view", expand=True)
-        row = column.row()
-        row.active = settings.view == "RESULTS"
-        row.prop(settings, "quantity")
+        fine = column.column()
+        fine.active = settings.view == "RESULTS"
+        fine.prop(settings, "show_backs")
+        fine.prop(settings, "quantity")
         column.prop(settings, "scale")
         column.row().prop(settings, "scaling", expand=True)
         column.prop(settings, "use_fixed_range")

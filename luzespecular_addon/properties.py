@@ -153,6 +153,7 @@ class LuzObjectSettings(bpy.types.PropertyGroup):
         default="AUTO",
     )
     is_results: BoolProperty(options={"HIDDEN"})
+    results_side: StringProperty(options={"HIDDEN"})
     hidden_for_results: BoolProperty(options={"HIDDEN"})
 
 
@@ -303,6 +304,12 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
             ("OWN", "Own Meshes", "Your own faces, each with its mean illuminance"),
         ),
         default="RESULTS",
+        update=_switch_view,
+    )
+    show_backs: BoolProperty(
+        name="Backs",
+        description="Show the fine faces of backs; without them one looks through walls from outside into the room",
+        default=True,
         update=_switch_view,
     )
     quantity: EnumProperty(

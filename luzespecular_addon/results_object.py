@@ -1,55 +1,60 @@
-"""The object *LuzEspecular results*: the solver's fine faces with every quantity; backs are faces that look back."""
+"""The objects *LuzEspecular results*: the solver's fine faces with every quantity, fronts and backs apart.
+
+Backs are faces that look back, so that a viewport which culls backfaces shows each side's own light, and an outside
+that hides the room can be switched off.
+"""
 
 from __future__ import annotations
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import core as luz
 from . import mesh_arrays, tables
 from .export import Export
 
-NAME = "LuzEspecular results"
+NAMES = {"front": "LuzEspecular results", "back": "LuzEspecular results (backs)"}
 
 SURFACE = "surface"
 """INT attribute of the FACE domain: the row of the surface in the results table."""
 
 
-def find(scene: bpy.types.Scene) -> bpy.types.Object | None:
-    """Return the results object of a scene, if there is one."""
-    return next((object_ for object_ in scene.objects if object_.luzespecular.is_results), None)
+def find(scene: bpy.types.Scene, side: str = "front") -> bpy.types.Object | None:
+    """Return the results object of one side, if there is one."""
+    return next((object_ for object_ in all_of(scene) if object_.luzespecular.results_side == side), None)
 
 
-def create(scene: bpy.types.Scene, export: Export, result: luz.Result) -> bpy.types.Object:
-    """Make the results object from the receivers' faces; it does not render and never takes part in a run itself."""
+def all_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Return the results objects of a scene."""
+    return [object_ for object_ in scene.objects if object_.luzespecular.is_results]
+
+
+def create(scene: bpy.types.Scene, export: Export, result: luz.Result) -> None:
+    """Make the results objects from the receivers' faces; they neither render nor take part in a run themselves."""
     remove(scene)
-    parts = list(tables.computed_faces(result, [surface.name for surface in export.surfaces if surface.receiver]))
-    corners = [_looking_at(label, result.vertices[faces]) for _, label, _, faces in parts]
-    mesh = mesh_arrays.new_triangle_mesh(NAME, np.concatenate([np.empty((0, 3, 3)), *corners]) / export.unit_scale)
-    for quantity in tables.quantities(result.front):
-        values = [tables.quantities(side)[quantity][faces] for _, _, side, faces in parts]
-        mesh_arrays.write_face_floats(mesh, quantity, np.concatenate([np.empty(0), *values]))
-    row_of_face = np.repeat(np.arange(len(parts)), [len(faces) for _, _, _, faces in parts])
-    mesh_arrays.write_face_integers(mesh, SURFACE, row_of_face)
-    object_ = bpy.data.objects.new(NAME, mesh)
-    object_.luzespecular.is_results = True
-    object_.hide_render = True
-    scene.collection.objects.link(object_)
-    return object_
+    receivers = [surface.name for surface in export.surfaces if surface.receiver]
+    parts = list(enumerate(tables.computed_faces(result, receivers)))
+    for label, name in NAMES.items():
+        chosen = [(row, side, faces) for row, (_, side_label, side, faces) in parts if side_label == label]
+        if not chosen:
+            continue
+        corners = result.vertices[np.concatenate([faces for _, _, faces in chosen])] / export.unit_scale
+        mesh = mesh_arrays.new_triangle_mesh(name, corners if label == "front" else corners[:, ::-1])
+        for quantity in tables.quantities(result.front):
+            values = [tables.quantities(side)[quantity][faces] for _, side, faces in chosen]
+            mesh_arrays.write_face_floats(mesh, quantity, np.concatenate(values))
+        rows, counts = [row for row, _, _ in chosen], [len(faces) for _, _, faces in chosen]
+        mesh_arrays.write_face_integers(mesh, SURFACE, np.repeat(rows, counts))
+        object_ = bpy.data.objects.new(name, mesh)
+        object_.luzespecular.is_results, object_.luzespecular.results_side = True, label
+        object_.hide_render = True
+        scene.collection.objects.link(object_)
 
 
 def remove(scene: bpy.types.Scene) -> None:
-    """Delete the results object of a scene together with its mesh."""
-    object_ = find(scene)
-    while object_ is not None:
+    """Delete the results objects of a scene together with their meshes."""
+    for object_ in all_of(scene):
         mesh = object_.data
         bpy.data.objects.remove(object_)
         if mesh.users == 0:
             bpy.data.meshes.remove(mesh)
-        object_ = find(scene)
-
-
-def _looking_at(side: str, corners: NDArray) -> NDArray:
-    """Return triangles (k, 3, 3) whose normals look to a side of the surface."""
-    return corners if side == "front" else corners[:, ::-1]

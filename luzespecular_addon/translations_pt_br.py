@@ -238,6 +238,10 @@ _DISPLAY = {
     ),
     "Own Meshes": "Malhas próprias",
     "Your own faces, each with its mean illuminance": "Suas próprias faces, cada uma com sua iluminância média",
+    "Backs": "Versos",
+    "Show the fine faces of backs; without them one looks through walls from outside into the room": (
+        "Mostrar as faces finas dos versos; sem elas vê-se de fora, através das paredes, o interior"
+    ),
     "Quantity": "Grandeza",
     "Which part of the light the fine faces show": "Que parte da luz as faces finas mostram",
     "Total": "Total",

@@ -171,11 +171,10 @@ def test_backs_look_backwards_with_their_own_lux(addon, bpy, make, solve):
     make.square("Sheet")
     make.quick()
     solve()
-    mesh = fine(addon, bpy).data
-    normals = np.array([polygon.normal[2] for polygon in mesh.polygons])
-    values = lux(addon, fine(addon, bpy))
-    assert values[normals > 0] == pytest.approx(OPEN_SKY, rel=1e-3)
-    assert values[normals < 0] == pytest.approx(0.0, abs=1.0)
+    for side, up, value in (("front", 1.0, OPEN_SKY), ("back", -1.0, 0.0)):
+        part = addon.results_object.find(bpy.context.scene, side)
+        assert [polygon.normal[2] for polygon in part.data.polygons] == pytest.approx([up, up])
+        assert lux(addon, part) == pytest.approx(value, rel=1e-3, abs=1.0)
     assert {(row.name, row.side) for row in bpy.context.scene.luzespecular.results.rows} == {
         ("Sheet", "front"),
         ("Sheet", "back"),
@@ -221,6 +220,11 @@ def test_view_can_be_switched_to_the_own_meshes_and_back(addon, bpy, make, solve
     settings.view = "RESULTS"
     assert floor.hide_get()
     assert not fine(addon, bpy).hide_get()
+    backs = addon.results_object.find(bpy.context.scene, "back")
+    assert not backs.hide_get()
+    settings.show_backs = False
+    assert backs.hide_get()
+    assert not fine(addon, bpy).hide_get()
 
 
 def test_colours_follow_the_display_settings(addon, bpy, make, solve):
@@ -248,8 +252,11 @@ def test_solving_again_replaces_the_results(addon, bpy, make, solve):
     settings.sky.horizontal_illuminance = 20_000.0
     solve()
     assert lux(addon, floor) == pytest.approx(20_000.0, rel=1e-3)
-    assert sum(object_.luzespecular.is_results for object_ in bpy.data.objects) == 1
-    assert sum(mesh.name.startswith("LuzEspecular") for mesh in bpy.data.meshes) == 1
+    assert sorted(o.name for o in bpy.data.objects if o.luzespecular.is_results) == [
+        "LuzEspecular results",
+        "LuzEspecular results (backs)",
+    ]
+    assert sum(mesh.name.startswith("LuzEspecular") for mesh in bpy.data.meshes) == 2
 
 
 def test_another_sky_does_not_prepare_again(addon, bpy, make, solve, monkeypatch):
@@ -452,7 +459,7 @@ def test_scenes_of_one_file_do_not_meddle(addon, bpy, make, solve):
     second = make.square("Floor of the other")
     make.quick()
     solve()
-    assert len({object_.name for object_ in bpy.data.objects if object_.luzespecular.is_results}) == 2
+    assert len([object_ for object_ in bpy.data.objects if object_.luzespecular.is_results]) == 4
     bpy.ops.luzespecular.clear_results()
     assert "illuminance" not in second.data.attributes
     assert "illuminance" in first.data.attributes
