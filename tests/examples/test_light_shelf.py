@@ -17,10 +17,16 @@ def room(example):
 
 
 @pytest.fixture(scope="module")
-def sunlit(room):
+def transfers(room):
+    """The three variants, prepared once for all tests."""
+    return {key: luz.prepare(room.scene(key), max_area=0.02) for key in room.VARIANTS}
+
+
+@pytest.fixture(scope="module")
+def sunlit(room, transfers):
     """Solutions for the noon Sun alone, without diffuse reflections: patches and nothing else."""
     light = room.daylight(12.0, sky=None)
-    return {key: luz.prepare(room.scene(key), max_area=0.1).solve(light, cycles=0) for key in room.VARIANTS}
+    return {key: transfer.solve(light, cycles=0) for key, transfer in transfers.items()}
 
 
 def edges(low, high):
@@ -103,9 +109,9 @@ REFERENCE = {
 
 
 @pytest.mark.parametrize(("variant", "light"), REFERENCE)
-def test_surface_means_of_independent_engines(room, variant, light):
+def test_surface_means_of_independent_engines(room, transfers, variant, light):
     daylight = room.daylight(12.0, sky=None if light == "sun" else light, sun=light == "sun")
-    result = luz.prepare(room.scene(variant), max_area=0.02).solve(daylight)
+    result = transfers[variant].solve(daylight)
     steps = 0.15 + 0.3 * np.arange(10)
     u, v = (a.ravel() for a in np.meshgrid(steps, steps))
     w = np.zeros_like(u)
