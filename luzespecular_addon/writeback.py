@@ -56,7 +56,7 @@ def refusals(objects: Iterable[bpy.types.Object]) -> list[Notice]:
     notices = []
     for object_ in objects:
         mesh = object_.data
-        if object_.type != "MESH" or mesh.luzespecular.has_results or not participants.takes_part(object_):
+        if object_.type != "MESH" or holds_results(mesh) or not participants.takes_part(object_):
             continue
         for name in _NAMES:
             if name in mesh.attributes:
@@ -97,7 +97,7 @@ def write(results: OwnResults) -> None:
     """Write the illuminance to the object's mesh and remember what was active on it before."""
     mesh = bpy.data.objects[results.object_name].data
     settings = mesh.luzespecular
-    if not settings.has_results:
+    if not holds_results(mesh):
         before = mesh_arrays.active_names(mesh)
         settings.active_attribute_before = before.attribute
         settings.active_colour_before = before.colour
@@ -113,7 +113,12 @@ def write(results: OwnResults) -> None:
 def written_meshes(scene: bpy.types.Scene) -> list[bpy.types.Mesh]:
     """Return the user meshes of a scene that hold results."""
     meshes = {object_.data: None for object_ in scene.objects if object_.type == "MESH"}
-    return [mesh for mesh in meshes if mesh.luzespecular.has_results]
+    return [mesh for mesh in meshes if holds_results(mesh)]
+
+
+def holds_results(mesh: bpy.types.Mesh) -> bool:
+    """Whether we wrote to a mesh; asked so that Blender 4 does not make an empty group of settings by the asking."""
+    return mesh.is_property_set("luzespecular") and mesh.luzespecular.has_results
 
 
 def clear(mesh: bpy.types.Mesh) -> None:

@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -31,6 +32,8 @@ ROOMS = (
     "writeback",
 )
 
+EXIT_STATUS = pytest.StashKey[int]()
+
 if importlib.util.find_spec("bpy") is None:
     collect_ignore_glob = ["test_*.py"]
 
@@ -39,6 +42,18 @@ def pytest_report_header():
     if importlib.util.find_spec("bpy") is None:
         return "Blender tests: left out, Blender's Python module (bpy) is not installed"
     return None
+
+
+def pytest_sessionfinish(session, exitstatus):
+    session.config.stash[EXIT_STATUS] = int(exitstatus)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config):
+    # As a module, Blender 4.2 crashes in its own clean-up once a property had an update function.
+    if "bpy" in sys.modules and sys.modules["bpy"].app.version < (5, 0, 0):
+        sys.stdout.flush()
+        os._exit(config.stash.get(EXIT_STATUS, 1))
 
 
 @pytest.fixture(scope="session")

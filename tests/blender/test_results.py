@@ -47,7 +47,7 @@ def everything(bpy):
                 mesh.color_attributes.active_color_name,
                 mesh.color_attributes.default_color_name,
                 tuple(mesh.keys()),
-                mesh.luzespecular.has_results,
+                mesh.is_property_set("luzespecular"),
             )
             for mesh in bpy.data.meshes
         ),
