@@ -57,19 +57,26 @@ def pytest_unconfigure(config):
 
 
 @pytest.fixture(scope="session")
-def blender():
-    """Blender with its user files in a folder of the tests' own, and the extension installed from its zip."""
-    sys.path.insert(0, str(ROOT / "tools"))
-    try:
-        import blender_session
-    finally:
-        sys.path.pop(0)
-    folder = tempfile.TemporaryDirectory(prefix="luzespecular tests é ", ignore_cleanup_errors=True)
-    blender_session.start(Path(folder.name))
-    import bpy
+def archive(tmp_path_factory):
+    """The extension as it is handed to Blender, built and validated by Blender's own tool."""
+    spec = importlib.util.spec_from_file_location("build_extension", ROOT / "tools" / "build_extension.py")
+    tool = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(tool)
+    return tool.build(tmp_path_factory.mktemp("dist"), quiet=True)
 
-    yield bpy
-    folder.cleanup()
+
+@pytest.fixture(scope="session")
+def blender(archive):
+    """Blender with its user files in a folder of the tests' own, and the extension installed from its zip."""
+    if "bpy" in sys.modules:
+        pytest.skip("Blender runs already, with user files that are not the tests' own")
+    with tempfile.TemporaryDirectory(prefix="luzespecular tests é ", ignore_cleanup_errors=True) as folder:
+        os.environ["BLENDER_USER_RESOURCES"] = folder
+        import bpy
+
+        bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
+        assert PACKAGE in bpy.context.preferences.addons
+        yield bpy
 
 
 @pytest.fixture

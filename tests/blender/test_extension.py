@@ -14,16 +14,6 @@ PACKAGE = "bl_ext.user_default.luzespecular"
 WANTED = {"blender_manifest.toml", "__init__.py", "LICENSE", "README.md", "core", "luzespecular_addon"}
 
 
-@pytest.fixture(scope="module")
-def archive(blender, tmp_path_factory):
-    sys.path.insert(0, str(ROOT / "tools"))
-    try:
-        import build_extension
-    finally:
-        sys.path.pop(0)
-    return build_extension.build(tmp_path_factory.mktemp("dist"), quiet=True)
-
-
 def test_zip_holds_only_what_it_needs(archive):
     names = [name for name in zipfile.ZipFile(archive).namelist() if not name.endswith("/")]
     assert {name.split("/")[0] for name in names} <= WANTED
