@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -12,17 +15,25 @@ import build_extension
 PACKAGE = "bl_ext.user_default.luzespecular"
 
 
-def start(folder: Path) -> None:
-    """Build the extension, start Blender with its user files in ``folder``, install the archive and enable it.
+@contextmanager
+def session() -> Iterator[None]:
+    """Build the extension, start Blender with its user files in a passing folder, install the archive and enable it.
 
     Call it before anything imports ``bpy``: Blender reads the place of its user files only once.
     """
     if "bpy" in sys.modules:
         raise RuntimeError("Blender runs already: start the session before importing bpy")
-    os.environ["BLENDER_USER_RESOURCES"] = str(folder)
-    archive = build_extension.build(folder, quiet=True)
-    import bpy
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["BLENDER_USER_RESOURCES"] = folder
+        archive = build_extension.build(Path(folder), quiet=True)
+        import bpy  # first: it makes Blender's own modules known
 
-    bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
-    if PACKAGE not in bpy.context.preferences.addons:
-        raise RuntimeError("Blender did not enable the extension; its messages above say why")
+        import addon_utils  # isort: skip
+
+        bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
+        if PACKAGE not in bpy.context.preferences.addons:
+            raise RuntimeError("Blender did not enable the extension; its messages above say why")
+        try:
+            yield
+        finally:  # while its files are still there
+            addon_utils.disable(PACKAGE, default_set=True)

@@ -13,7 +13,6 @@ import argparse
 import csv
 import logging
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -49,8 +48,7 @@ def main() -> int:
     parser.add_argument("--no-pictures", action="store_true", help="print and save the tables only")
     arguments = parser.parse_args()
     arguments.output.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        blender_session.start(Path(folder))
+    with blender_session.session():
         run(arguments.output, pictures=not arguments.no_pictures)
     return 0
 

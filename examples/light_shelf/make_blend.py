@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import sys
-import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -142,12 +142,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--output", type=Path, default=HERE / "light_shelf.blend")
     output = parser.parse_args().output
-    with tempfile.TemporaryDirectory() as folder:
-        blender_session.start(Path(folder))
+    with blender_session.session():
         write(output)
     print(output)
     return 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    status = main()
+    sys.stdout.flush()
+    os._exit(status)  # Blender 4.2 as a Python module crashes in its own exit handlers once an extension was loaded
