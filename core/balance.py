@@ -15,20 +15,23 @@ if TYPE_CHECKING:
 class Balance:
     """Lumens of a scene.
 
+    Light counts where it lands, after any specular chain. What lands is absorbed or diffusely reflected; what is reflected
+    or emitted lands again, escapes, is lost on dark backs, or is cut off with its chain.
+
     Attributes
     ----------
     entering : float
-        Emitted by surfaces, and arriving on them from sky, ground and Sun without any diffuse reflection.
+        Emitted by surfaces, plus what of sky, ground and Sun lands without any diffuse reflection [lm].
     absorbed : dict of str to float
-        By surface.
+        By surface, fronts and receiving backs together [lm].
     unlit : float
-        Lost on sides that receive nothing (the backs of one-sided surfaces).
+        Lost on sides that receive nothing, the backs of one-sided surfaces [lm].
     escaped : float
-        Left through openings.
+        Emitted or reflected diffusely, and out through openings [lm].
     truncated : float
-        In specular chains that were cut off.
+        In specular chains that were cut off: sunlight exactly, other light as if what is behind the cut were as bright as the mean [lm].
     defect : float
-        What the balance fails to close by, relative to ``entering``.
+        What fails to close the balance, relative to ``entering``.
     """
 
     entering: float
@@ -40,5 +43,46 @@ class Balance:
 
 
 def lumen_balance(result: Result) -> Balance:
-    """Balance of a result; see `Balance`."""
-    raise NotImplementedError
+    """Balance of a result on its elements; see `Balance`."""
+    transfer, components = result.transfer, result.field.components
+    geometry = transfer.geometry
+    area, surface = geometry.fracture.element_areas, geometry.element_surface
+    materials = geometry.surface_materials
+    absorptance = np.array([m.hemispherical_absorptance for m in materials])[surface]
+    reflectance = np.array([m.diffuse_reflectance for m in materials])[surface]
+    emitted = np.array([m.exitance for m in materials])[surface]
+
+    illuminance = sum(components.values())
+    outside = sum(components[name] for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular"))
+    entering = float((area * (emitted + outside * (absorptance + reflectance))).sum())
+    flux = area * (emitted + reflectance * illuminance)
+    open_share = transfer.sky_direct.sum(axis=1)
+    open_share[transfer.specular_rows] += transfer.sky_specular.sum(axis=1)
+    escaped, unlit = float(flux @ open_share), float(flux @ transfer.unlit)
+    lost = flux @ transfer.truncated
+    absorbed = np.bincount(surface, weights=area * illuminance * absorptance, minlength=len(materials))
+    # light from outside that is cut with its chain never lands, so it is no part of entering
+    truncated = float(lost)
+    if entering == 0:
+        return Balance(0.0, dict(zip(geometry.planes.surfaces, absorbed.tolist(), strict=True)), 0.0, 0.0, result.sunlight.truncated, 0.0)
+    defect = (entering - absorbed.sum() - escaped - unlit - truncated) / entering
+    return Balance(
+        entering=entering,
+        absorbed=dict(zip(geometry.planes.surfaces, absorbed.tolist(), strict=True)),
+        unlit=unlit,
+        escaped=escaped,
+        truncated=truncated + result.sunlight.truncated + _cut_sky(result),
+        defect=float(defect),
+    )
+
+
+def _cut_sky(result: Result) -> float:
+    """Lumens of sky and ground light in the cut chains, as if these ended in the mean luminance of the globe's open part."""
+    transfer = result.transfer
+    area = transfer.geometry.fracture.element_areas
+    if not transfer.truncated.any() or not result.sky.any():
+        return 0.0
+    weight = transfer.sky_direct.sum(axis=0)
+    total = float(weight.sum())
+    mean = float(weight @ result.sky) / total if total else 0.0
+    return float(np.pi * mean * (area @ transfer.truncated))

@@ -54,7 +54,7 @@ class Gathered:
     sky_direct, sky_specular : (r, c) float32, or None where no mirror was seen
         Form factor to each sky parcel, and last to the ground.
     unlit : (r,) float32
-        Form factor to sides that neither reflect nor emit diffusely.
+        Form factor to sides that receive nothing, the backs of one-sided surfaces.
     truncated : (r,) float32
         Form factor of the chains that were cut off.
     """
@@ -90,7 +90,11 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
     for s in sightings:
         parts = s.part_weights()
         _add_patches(s, parts, targets, patches, unlit)
-        if s.mirrored:
+        if s.rays:
+            if s.mirrored and specular is None:
+                specular = np.zeros_like(direct)
+            _splat(s, parts, targets, specular if s.mirrored else direct)
+        elif s.mirrored:
             specular = np.zeros_like(direct) if specular is None else specular
             _add_mirrored_sky(s, parts, targets, specular)
         else:
@@ -106,46 +110,83 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
 
 
 def _add_patches(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray, unlit: np.ndarray) -> None:
-    if not len(s.obstacles.outlines):
-        return
+    found = [*_whole_beams(s, targets, unlit), _parts_of_beams(s, parts, targets, unlit)]
+    row = np.concatenate([f[0] for f in found])
+    if len(row):
+        flat = s.rows[row] * targets.patches.count + np.concatenate([f[1] for f in found])
+        weight = np.concatenate([f[2] for f in found])
+        out += np.bincount(flat, weights=weight, minlength=out.size).reshape(out.shape)
+
+
+def _whole_beams(s: Sighting, targets: Targets, unlit: np.ndarray):
+    """Rows, patches and weights of the beams that see one obstacle wholly: in float32, obstacle by obstacle."""
+    grid, fronts = targets.patches, len(targets.planes.sheet_surface)
+    for k, columns in s.view.columns.items():
+        sheet = targets.planes.outline_sheet[s.obstacles.outlines[k]]
+        behind = s.view.heights[:, k] > 0
+        for back in (False, True):
+            rows = np.flatnonzero(behind == back)
+            if not len(rows):
+                continue
+            base = int(grid.grid_base[sheet + back * fronts])
+            dead = base < 0 and s.dead_share(k, back)
+            if base < 0 and not dead:
+                continue
+            here = np.ix_(rows, columns) if len(rows) < len(behind) else (slice(None), columns)
+            seen = s.view.seen[here] == k
+            weights = np.broadcast_to(s.weights[here], seen.shape)
+            if dead:
+                unlit[s.rows[rows]] += dead * np.where(seen, weights, 0.0).sum(axis=1)
+                continue
+            cell = _grid_cells(s, targets, sheet, back * fronts, rows, columns, s.view.nearest[here])
+            row = np.broadcast_to(rows[:, None], seen.shape)[seen]
+            yield row, grid.grid[base + cell[seen]], weights[seen]
+
+
+def _grid_cells(s: Sighting, targets: Targets, sheet: int, behind: int, rows, columns, distance) -> np.ndarray:
+    """(r, k) int32: cell of the sheet's grid that each beam ends in."""
+    grid, axes = targets.patches, targets.planes.sheet_axes[sheet]
+    origin, scale, shape = (g[sheet + behind] for g in (grid.grid_origin, grid.grid_scale, grid.grid_shape))
+    # in-plane place = axes · point + distance · (axes · direction), in cells
+    start = ((s.points[rows] @ axes.T - origin) * scale).astype(np.float32)
+    along = ((s.beams.directions[columns] @ axes.T) * scale).astype(np.float32)
+    cells = []
+    for axis in (0, 1):
+        place = distance * along[:, axis]
+        place += start[:, axis, None]
+        np.maximum(place, 0, out=place)
+        np.minimum(place, np.float32(shape[axis] - 0.5), out=place)
+        cells.append(place.astype(np.int32))
+    cells[0] *= np.int32(shape[1])
+    return np.add(cells[0], cells[1], out=cells[0])
+
+
+def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.ndarray):
+    """Rows, patches and weights of the parts of shared beams."""
     view, grid = s.view, targets.patches
     fronts = len(targets.planes.sheet_surface)
-    sheet = targets.planes.outline_sheet[s.obstacles.outlines]
-    whole = np.flatnonzero(view.seen >= 0)
-    row, beam = np.divmod(whole, view.seen.shape[1])
-    obstacle = view.seen.ravel()[whole]
-    weight = s.weights[row, beam]
     mine = np.flatnonzero(view.part_seen >= 0)
-    row = np.concatenate([row, view.part_row[mine]])
-    obstacle = np.concatenate([obstacle, view.part_seen[mine]])
-    weight = np.concatenate([weight, parts[mine]])
+    row, obstacle, weight, towards = view.part_row[mine], view.part_seen[mine], parts[mine], view.part_direction[mine]
+    sheet = targets.planes.outline_sheet[s.obstacles.outlines[obstacle]]
     height = view.heights[row, obstacle]
-    side = sheet[obstacle] + np.where(height > 0, fronts, 0)
+    side = sheet + np.where(height > 0, fronts, 0)
     base = grid.grid_base[side]
-    dark = base < 0
-    if dark.any():
-        unlit[s.rows] += np.bincount(row[dark], weights=weight[dark], minlength=len(s.rows))
-    axes, origin, scale = targets.planes.sheet_axes[sheet], grid.grid_origin, grid.grid_scale
-    slope = s.beams.directions @ s.obstacles.normals.T
-    # in-plane place = (axes · point) + distance · (axes · direction)
-    at_point = np.einsum("oac,rc->roa", axes, s.points)
-    along = np.einsum("oac,kc->koa", axes, s.beams.directions)
-    count = len(whole)
+    dark = np.flatnonzero(base < 0)
+    if len(dark):
+        kinds, kind = np.unique(obstacle[dark] * 2 + (height[dark] > 0), return_inverse=True)
+        dead = np.array([s.dead_share(int(k // 2), bool(k % 2)) for k in kinds])[kind.reshape(-1)]
+        unlit += np.bincount(s.rows[row[dark]], weights=weight[dark] * dead, minlength=len(unlit))
+    lit = base >= 0
+    row, obstacle, weight, towards = row[lit], obstacle[lit], weight[lit], towards[lit]
+    sheet, side, base, height = sheet[lit], side[lit], base[lit], height[lit]
+    axes = targets.planes.sheet_axes[sheet]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        distance = height[:count] / slope[beam, obstacle[:count]]
-        place = at_point[row[:count], obstacle[:count]] + distance[:, None] * along[beam, obstacle[:count]]
-        to_part = view.part_direction[mine]
-        o = obstacle[count:]
-        far = height[count:] / np.einsum("nc,nc->n", to_part, s.obstacles.normals[o])
-        part_place = at_point[row[count:], o] + far[:, None] * np.einsum("nac,nc->na", axes[o], to_part)
-    place = np.nan_to_num(np.concatenate([place, part_place]), posinf=1e30, neginf=-1e30)
+        distance = height / np.einsum("nc,nc->n", towards, s.obstacles.normals[obstacle])
+        place = np.einsum("nac,nc->na", axes, s.points[row] + distance[:, None] * towards)
+    place = np.nan_to_num((place - grid.grid_origin[side]) * grid.grid_scale[side], posinf=1e30, neginf=-1e30)
     shape = grid.grid_shape[side]
-    cell = np.clip((place - origin[side]) * scale[side], 0, shape - 1).astype(np.int64)
-    lit = ~dark
-    patch = grid.grid[(base + cell[:, 0] * shape[:, 1] + cell[:, 1])[lit]]
-    flat = row[lit] * targets.patches.count + patch
-    sums = np.bincount(flat, weights=weight[lit], minlength=len(s.rows) * targets.patches.count)
-    out[s.rows] += sums.reshape(len(s.rows), -1)
+    cell = np.clip(place, 0, shape - 0.5).astype(np.int64)
+    return row, grid.grid[base + cell[:, 0] * shape[:, 1] + cell[:, 1]], weight
 
 
 def _add_sky(s: Sighting, parts: np.ndarray, targets: Targets, hemisphere: Hemisphere, out: np.ndarray) -> None:
@@ -163,8 +204,8 @@ def _add_mirrored_sky(s: Sighting, parts: np.ndarray, targets: Targets, out: np.
     weight = s.weights[row, beam]
     parcels, shares = _columns(s.beams.directions, targets)
     for k in range(4):
-        flat = row * targets.columns + parcels[beam, k]
-        out[s.rows] += np.bincount(flat, weights=weight * shares[beam, k], minlength=len(s.rows) * targets.columns).reshape(len(s.rows), -1)
+        flat = s.rows[row] * targets.columns + parcels[beam, k]
+        out += np.bincount(flat, weights=weight * shares[beam, k], minlength=out.size).reshape(out.shape)
     _splat(s, parts, targets, out)
 
 

@@ -118,6 +118,16 @@ class Material:
         return pane_optics(cosine, self.refractive_index, self._inner)[1]
 
     @property
+    def hemispherical_absorptance(self) -> float:
+        """Share of evenly diffuse incident light that is absorbed."""
+        if self.refractive_index is None:
+            return 1.0 - self.diffuse_reflectance - self.specular_reflectance - self.regular_transmittance
+        nodes, weights = np.polynomial.legendre.leggauss(64)
+        cosine = 0.5 * (nodes + 1)
+        reflectance, transmittance = pane_optics(cosine, self.refractive_index, self._inner)
+        return float(1.0 - (weights * cosine * (reflectance + transmittance)).sum())
+
+    @property
     def _inner(self) -> float:
         return inner_transmittance(self.regular_transmittance, self.refractive_index)
 

@@ -8,17 +8,24 @@ go on until the product of reflectances falls below a cut-off; what is cut is bo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 
 import numpy as np
 
 from .globe import Hemisphere
 from .materials import Material
-from .projection import Beams, HalfSpace, Obstacles, obstacles_within, reflect_points
-from .visibility import View, look
+from .projection import Beams, HalfSpace, Obstacles, obstacles_within, reflect, reflect_points
+from .rays import RayScene
+from .visibility import SHARED, View, look
 
 DEEPEST_CHAIN = 200
 """No chain is followed further, even between perfect mirrors."""
+
+MANY_OUTLINES = 600
+"""Scenes of more outlines are looked at ray by ray."""
+
+_FEW_BEAMS = 2_500
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +50,18 @@ class Outlines:
     two_sided: np.ndarray
     tolerance: float
 
-    @property
+    @cached_property
+    def rays(self) -> RayScene:
+        """The outlines, to shoot single rays at."""
+        return RayScene(self.vertices, self.normals, self.offsets, self.tolerance)
+
+    @cached_property
+    def whole(self) -> Obstacles:
+        """All outlines, uncut, as obstacles."""
+        bounding = np.ones(self.vertices.shape[:2], bool)
+        return Obstacles(np.arange(len(self.vertices)), self.vertices, bounding, self.normals, self.offsets)
+
+    @cached_property
     def any_specular(self) -> bool:
         """Whether any surface mirrors or transmits regularly."""
         return any(m.is_specular or m.is_transparent for m in self.materials)
@@ -68,6 +86,9 @@ class Sighting:
         Cosine weight of each beam times the reflectances and transmittances on the way here; 0 where the beam did not come.
     mirrored : bool
         Whether at least one mirror was on the way.
+    rays : bool
+        Whether each row is a single ray, wholly described by one part.
+    outlines : Outlines
     """
 
     rows: np.ndarray
@@ -78,10 +99,22 @@ class Sighting:
     view: View
     weights: np.ndarray
     mirrored: bool
+    outlines: Outlines
+    rays: bool = False
+
+    def dead_share(self, obstacle: int, back: bool) -> float:
+        """Share of the light that is lost on an obstacle's side because that side is no receiver."""
+        o = self.obstacles.outlines[obstacle]
+        if not back or self.outlines.two_sided[o]:
+            return 0.0
+        material = self.outlines.materials[o]
+        return material.hemispherical_absorptance if material.is_transparent else 1.0
 
     def part_weights(self) -> np.ndarray:
         """(p,) float: weight of each part of a shared beam, with the cosine at the part's own centre."""
         v = self.view
+        if self.rays:
+            return self.weights[:, 0]
         cosine = self.beams.directions @ self.normal
         tilt = (v.part_direction @ self.normal) / cosine[v.part_beam]
         return self.weights[v.part_row, v.part_beam] * v.part_share * np.clip(tilt, 0.0, 2.0)
@@ -98,6 +131,96 @@ class ChainLimits:
     """
 
     cutoff: float = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class _Rays:
+    """Single rays on their way: all arrays of length n."""
+
+    rows: np.ndarray
+    points: np.ndarray
+    directions: np.ndarray
+    weights: np.ndarray
+    throughput: np.ndarray
+    mirrored: np.ndarray
+    depth: np.ndarray
+
+    @classmethod
+    def of(cls, rows, points, directions, weights, throughput: float, mirrored: bool, depth: int) -> _Rays:
+        """One ray for each beam ``(r, k)`` of any weight."""
+        row, beam = np.nonzero(weights)
+        n = len(row)
+        return cls(
+            rows[row],
+            points[row],
+            directions[beam],
+            weights[row, beam],
+            np.full(n, throughput),
+            np.full(n, mirrored),
+            np.full(n, depth),
+        )
+
+    @classmethod
+    def beyond(cls, rows, points, directions, weights, throughput: float, mirrored: bool, past: HalfSpace, depth: int) -> _Rays:
+        """Rays of mirrored receivers, set forward to the mirror's plane."""
+        rays = cls.of(rows, points, directions, weights, throughput, mirrored, depth)
+        ahead = (past.offset - rays.points @ past.normal) / (rays.directions @ past.normal)
+        return replace(rays, points=rays.points + ahead[:, None] * rays.directions)
+
+    @classmethod
+    def joined(cls, parts: list[_Rays]) -> _Rays:
+        """All rays in one."""
+        if not parts:
+            none = np.zeros(0)
+            return cls(none.astype(np.int64), np.zeros((0, 3)), np.zeros((0, 3)), none, none, none.astype(bool), none.astype(np.int64))
+        return cls(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)))
+
+    def take(self, index) -> _Rays:
+        """Some of the rays."""
+        return _Rays(*(getattr(self, f.name)[index] for f in fields(self)))
+
+    def onward(self, places, share, normal, kind: str) -> _Rays:
+        """The rays after a mirror or a pane."""
+        mirror = kind == "mirror"
+        return _Rays(
+            self.rows,
+            places,
+            reflect(self.directions, normal) if mirror else self.directions,
+            self.weights * share,
+            self.throughput * share,
+            self.mirrored | mirror,
+            self.depth + 1,
+        )
+
+
+def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrored: bool) -> Sighting:
+    n = len(rays.rows)
+    none = np.zeros((0, 2))
+    view = View(
+        seen=np.full((n, 0), SHARED, np.int32),
+        part_row=np.arange(n),
+        part_beam=np.zeros(n, np.int64),
+        part_seen=outline,
+        part_share=np.ones(n),
+        part_direction=rays.directions,
+        nearest=np.zeros((n, 0), np.float32),
+        columns={},
+        heights=_Heights(outlines, rays.points),
+    )
+    beams = Beams(np.zeros((0, 3)), np.zeros((0, 2, 3)), none, np.zeros(0, np.int64))
+    return Sighting(rays.rows, rays.points, np.zeros(3), beams, outlines.whole, view, rays.weights[:, None], mirrored, outlines, rays=True)
+
+
+@dataclass(frozen=True, eq=False)
+class _Heights:
+    """Signed distances from points to outlines' planes, found only where asked for: ``heights[rows, outlines]``."""
+
+    outlines: Outlines
+    points: np.ndarray
+
+    def __getitem__(self, key):
+        row, outline = key
+        return self.outlines.offsets[outline] - np.einsum("nc,nc->n", self.points[row], self.outlines.normals[outline])
 
 
 @dataclass
@@ -139,26 +262,54 @@ class GroupSight:
 
     def _follow(self, points, truncated, checkpoint) -> Iterator[Sighting]:
         hemisphere = self.hemisphere
+        beams = Beams.of(hemisphere)
         weights = np.broadcast_to(hemisphere.weights, (len(points), len(hemisphere.weights)))
         horizon = HalfSpace(hemisphere.normal, self.offset)
-        stack = [(np.arange(len(points)), points, horizon, (), Beams.of(hemisphere), weights, 1.0, False, ())]
+        left = []
+        if len(self.outlines.vertices) > MANY_OUTLINES:
+            left.append(_Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, False, 0))
+            stack = []
+        else:
+            stack = [(np.arange(len(points)), points, horizon, (), beams, weights, 1.0, False, ())]
         while stack:
             rows, origin, horizon, beyond, beams, weights, throughput, mirrored, chain = stack.pop()
             checkpoint()
             obstacles = self._cut(chain, [horizon, *beyond])
-            sighting = Sighting(
-                rows,
-                origin,
-                horizon.normal,
-                beams,
-                obstacles,
-                look(origin, beams, obstacles, self.outlines.tolerance),
-                weights,
-                mirrored,
-            )
+            view = look(origin, beams, obstacles, self.outlines.tolerance)
+            sighting = Sighting(rows, origin, horizon.normal, beams, obstacles, view, weights, mirrored, self.outlines)
             yield sighting
             if self.outlines.any_specular:
-                stack += self._continue(sighting, horizon, throughput, chain, truncated)
+                stack += self._continue(sighting, horizon, throughput, chain, truncated, left)
+        yield from self._trace(left, truncated, checkpoint)
+
+    def _trace(self, left: list[_Rays], truncated, checkpoint) -> Iterator[Sighting]:
+        """Follow rays one by one, from where the mirrored view was too narrow to be worth sharing."""
+        rays = _Rays.joined(left)
+        while len(rays.rows):
+            checkpoint()
+            outline, distance = self.outlines.rays.nearest(rays.points, rays.directions)
+            for mirrored in (False, True):
+                mine = np.flatnonzero(rays.mirrored == mirrored)
+                if len(mine):
+                    yield _ray_sighting(self.outlines, rays.take(mine), outline[mine], mirrored)
+            met = np.flatnonzero(outline >= 0)
+            place = rays.points[met] + distance[met, None] * rays.directions[met]
+            onward = []
+            for o in np.unique(outline[met]):
+                material = self.outlines.materials[o]
+                if not (material.is_specular or material.is_transparent):
+                    continue
+                here = outline[met] == o
+                here_rays, here_place = rays.take(met[here]), place[here]
+                cosine = here_rays.directions @ self.outlines.normals[o]
+                for front in (True, False):
+                    side = np.flatnonzero((cosine < 0) == front)
+                    for kind, share in self._ways(material, o, front, cosine[side]):
+                        onward.append(here_rays.take(side).onward(here_place[side], share, self.outlines.normals[o], kind))
+            rays = _Rays.joined(onward)
+            kept = (rays.throughput >= self.limits.cutoff) & (rays.depth < DEEPEST_CHAIN)
+            np.add.at(truncated, rays.rows[~kept], rays.weights[~kept])
+            rays = rays.take(np.flatnonzero(kept))
 
     def _cut(self, chain, half_spaces) -> Obstacles:
         if chain not in self._obstacles:
@@ -166,7 +317,7 @@ class GroupSight:
             self._obstacles[chain] = obstacles_within(o.vertices, o.normals, o.offsets, half_spaces, o.tolerance)
         return self._obstacles[chain]
 
-    def _continue(self, s: Sighting, horizon: HalfSpace, throughput: float, chain, truncated) -> list:
+    def _continue(self, s: Sighting, horizon: HalfSpace, throughput: float, chain, truncated, left: list) -> list:
         following = []
         parts = None
         for k, o in enumerate(s.obstacles.outlines):
@@ -189,6 +340,7 @@ class GroupSight:
                     if not len(rows):
                         continue
                     onward = onward[np.ix_(rows, columns)]
+                    lit = np.count_nonzero(onward)
                     product = throughput * float(share[columns].max())
                     step = (int(o), kind, front)
                     if product < self.limits.cutoff or len(chain) >= DEEPEST_CHAIN:
@@ -203,6 +355,12 @@ class GroupSight:
                     else:
                         facing = -1.0 if front else 1.0
                         ahead, past = horizon, HalfSpace(facing * normal, facing * offset)
+                    if chain and lit < _FEW_BEAMS:
+                        start = points if kind == "mirror" else s.points[rows]
+                        left.append(
+                            _Rays.beyond(s.rows[rows], start, beams.directions, onward, product, s.mirrored or kind == "mirror", past, len(chain) + 1)
+                        )
+                        continue
                     following.append(
                         (s.rows[rows], points, ahead, (past,), beams, onward, product, s.mirrored or kind == "mirror", (*chain, step))
                     )

@@ -23,7 +23,8 @@ from .stages import Progress, Recorder, Stage
 PATCHES = 2_000
 """Patches that exitance is resolved in."""
 
-_CHUNK_CELLS = 200_000
+_CHUNK_CELLS = 80_000
+"""Receivers times beams that are looked at together: they stay in cache, and matrix products too small for BLAS to split."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,12 @@ SHARED = -2
 
 _SUBRAYS = 4
 
+_ON_EDGE = 1e-6
+"""Rays this close to an edge [rad] count as inside, so that none slips between two obstacles that share it."""
+
+_SAME_EDGE = 1e-4
+"""Shares of two obstacles at one edge that sum to 1 this closely belong to obstacles that share the edge."""
+
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -36,6 +42,10 @@ class View:
         Share of the beam; the shares of one beam sum to 1.
     part_direction : (p, 3) float
         Towards the part's centre, not normalised.
+    nearest : (r, k) float32
+        Distance along each beam to the obstacle seen wholly [m].
+    columns : dict of int to (c,) int
+        For each obstacle that may be seen wholly, the beams that may see it.
     heights : (r, o) float
         Signed distance from each receiver to each obstacle's plane, along the obstacle's normal [m].
     """
@@ -46,6 +56,8 @@ class View:
     part_seen: np.ndarray
     part_share: np.ndarray
     part_direction: np.ndarray
+    nearest: np.ndarray
+    columns: dict[int, np.ndarray]
     heights: np.ndarray
 
 
@@ -74,7 +86,9 @@ def look(points, beams: Beams, obstacles: Obstacles, tolerance: float) -> View:
     reach = beams.reach * 1.01 + 1e-6
     hull = _bounding_corners(points)
     slopes = beams.directions @ obstacles.normals.T
-    part_row, part_beam, part_obstacle = [], [], []
+    found = []
+    width = obstacles.bounding.shape[1]
+    possible: dict[int, np.ndarray] = {}
     for o in range(len(obstacles.outlines)):
         bounded = obstacles.bounding[o]
         columns, certain = _columns_within(hull, obstacles.vertices[o], bounded, heights[:, o], beams.directions, reach)
@@ -85,25 +99,33 @@ def look(points, beams: Beams, obstacles: Obstacles, tolerance: float) -> View:
             slope = (1.0 / slopes[columns, o]).astype(np.float32)
         distance = heights[:, o].astype(np.float32)[:, None] * slope
         if not certain.all():
-            inside = _inner_distance(edges, beams.directions[columns].astype(np.float32))
+            sines = _edge_sines(edges, beams.directions[columns].astype(np.float32))
+            inside = sines[0].copy() if len(sines) else np.full(distance.shape, np.inf, np.float32)
+            for other in sines[1:]:
+                np.minimum(inside, other, out=inside)
             limit = reach[columns].astype(np.float32)
             whole = inside > limit
             near = np.flatnonzero(np.abs(inside, out=inside) <= limit)
-            row, column = np.divmod(near, len(columns))
-            part_row.append(row)
-            part_beam.append(columns[column])
-            part_obstacle.append(np.full(len(row), o))
+            if len(near):
+                row, column = np.divmod(near, len(columns))
+                sine = np.full((len(near), width), np.inf, np.float32)
+                for edge, values in zip(np.flatnonzero(bounded), sines, strict=True):
+                    sine[:, edge] = values.ravel()[near]
+                found.append((row, columns[column], np.full(len(row), o), sine))
         else:
             whole = np.ones(distance.shape, bool)
         before = nearest[:, columns]
-        whole &= (distance < before) & (distance > 0)
-        nearest[:, columns] = np.where(whole, distance, before)
-        seen[:, columns] = np.where(whole, o, seen[:, columns])
-    if not part_row:
+        whole &= distance < before
+        whole &= distance > 0
+        if whole.any():
+            nearest[:, columns] = np.where(whole, distance, before)
+            seen[:, columns] = np.where(whole, np.int32(o), seen[:, columns])
+            possible[o] = columns
+    if not found:
         empty = np.zeros(0, np.int64)
-        return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), heights)
-    candidates = tuple(np.concatenate(x) for x in (part_row, part_beam, part_obstacle))
-    return _settle_parts(seen, nearest, candidates, planes, heights, slopes, beams, obstacles)
+        return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
+    candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
+    return _settle_parts(seen, nearest, possible, candidates, planes, heights, slopes, beams, obstacles)
 
 
 def _bounding_corners(points: np.ndarray) -> np.ndarray:
@@ -139,64 +161,58 @@ def _columns_within(hull, outline, bounded, heights, directions, reach):
     return columns, certain
 
 
-def _inner_distance(edges: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """(r, k) float32: sine of the angle from each beam's centre to the nearest edge, positive inside."""
+def _edge_sines(edges: np.ndarray, directions: np.ndarray) -> list[np.ndarray]:
+    """For each edge (r, k) float32: sine of the angle from each beam's centre to its plane, positive inside."""
     across = np.ascontiguousarray(directions.T)
-    if not edges.shape[1]:
-        return np.full((len(edges), len(directions)), np.inf, np.float32)
-    inside = np.dot(np.ascontiguousarray(edges[:, 0]), across)
-    other = np.empty_like(inside)
-    for e in range(1, edges.shape[1]):
-        np.dot(np.ascontiguousarray(edges[:, e]), across, out=other)
-        np.minimum(inside, other, out=inside)
-    return inside
+    return [np.dot(np.ascontiguousarray(edges[:, e]), across) for e in range(edges.shape[1])]
 
 
-def _settle_parts(seen, nearest, candidates, planes, heights, slopes, beams, obstacles) -> View:
-    row, beam, obstacle = candidates
-    normal = planes[row, obstacle]
-    sine = np.einsum("nwc,nc->nw", normal, beams.directions[beam])
-    axes, half = beams.axes[beam], beams.half_widths[beam]
-    width_a = 2 * half[:, :1] * np.abs(np.einsum("nwc,nc->nw", normal, axes[:, 0]))
-    width_b = 2 * half[:, 1:] * np.abs(np.einsum("nwc,nc->nw", normal, axes[:, 1]))
-    support = 0.5 * (width_a + width_b)
-    bounded = obstacles.bounding[obstacle]
-    outside = (bounded & (sine <= -support)).any(axis=1)
-    crossed = bounded & (np.abs(sine) < support)
+def _settle_parts(seen, nearest, possible, candidates, planes, heights, slopes, beams, obstacles) -> View:
+    row, beam, obstacle, sine = candidates
+    reach = beams.reach[beam]
+    pair, edge = np.nonzero(np.abs(sine) < reach[:, None])
+    normal = planes[row[pair], obstacle[pair], edge]
+    across = 2 * beams.half_widths[beam[pair]] * np.abs(np.einsum("nac,nc->na", beams.axes[beam[pair]], normal))
+    place = sine[pair, edge].astype(float)
+    support = 0.5 * across.sum(axis=1)
+    outside = (sine <= -reach[:, None]).any(axis=1)
+    outside[pair[place <= -support]] = True
+    crossing = np.abs(place) < support
+    pair, normal, across, place = pair[crossing], normal[crossing], across[crossing], place[crossing]
+    edges = np.bincount(pair, minlength=len(row))
     with np.errstate(divide="ignore", invalid="ignore"):
         distance = heights[row, obstacle] / slopes[beam, obstacle]
     distance = np.where(distance > 0, distance, np.inf)
-    edges = crossed.sum(axis=1)
     behind = np.isfinite(distance) & (distance > nearest[row, beam] * (1 + 1e-5))
+    share, offset = np.ones(len(row)), np.zeros((len(row), 3))
+    covered, moment = coverage(place, across[:, 0], across[:, 1])
+    share[pair] = covered
+    offset[pair] = (moment / np.maximum(covered, 1e-12))[:, None] * normal
     keep = np.flatnonzero(~outside & (heights[row, obstacle] != 0) & ~(behind & (edges < 2)))
     order = keep[np.lexsort((distance[keep], row[keep] * len(beams.directions) + beam[keep]))]
     row, beam, obstacle, distance, edges = row[order], beam[order], obstacle[order], distance[order], edges[order]
+    share, offset = share[order], offset[order]
     if not len(row):
         empty = np.zeros(0, np.int64)
-        return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), heights)
+        return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
     key = row * len(beams.directions) + beam
     starts = np.flatnonzero(np.concatenate(([True], key[1:] != key[:-1])))
     group = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(key))))
-    which = np.argmax(crossed[order], axis=1)
-    pick = np.arange(len(order))
-    share, moment = coverage(sine[order][pick, which], width_a[order][pick, which], width_b[order][pick, which])
-    share[edges == 0] = 1.0
-    moment[edges == 0] = 0.0
-    offset = (moment / np.maximum(share, 1e-12))[:, None] * normal[order][pick, which]
     group_edges = np.add.reduceat(edges, starts)
     group_share = np.add.reduceat(share, starts)
     size = np.diff(np.append(starts, len(key)))
     straight = np.isfinite(np.maximum.reduceat(distance, starts))
-    simple = straight & (
-        ((size == 1) & (group_edges <= 1)) | ((size == 2) & (group_edges == 2) & (np.abs(group_share - 1) < 1e-6))
-    )
-    edges_most = np.maximum.reduceat(edges, starts)
-    simple &= edges_most <= 1
+    joined = (size == 2) & (group_edges == 2) & (np.abs(group_share - 1) < _SAME_EDGE)
+    simple = straight & (((size == 1) & (group_edges <= 1)) | joined) & (np.maximum.reduceat(edges, starts) <= 1)
+    # two obstacles share the edge: nothing is left between them, to the last bit
+    meeting = (joined & simple)[group]
+    share[meeting] /= group_share[group[meeting]]
+    group_share[joined & simple] = 1.0
     complex_ = np.flatnonzero(~simple)
     if len(complex_):
         chosen = np.flatnonzero(~simple[group])
         share[chosen], offset[chosen], rest, rest_offset = _sample_parts(
-            row[chosen], beam[chosen], obstacle[chosen], group[chosen], seen, planes, heights, obstacles.normals, beams
+            row[chosen], beam[chosen], obstacle[chosen], sine[order[chosen]], group[chosen], seen, planes, heights, obstacles.normals, beams
         )
     left = np.where(simple, 1.0 - group_share, 0.0)
     background_offset = -np.add.reduceat(share[:, None] * offset, starts, axis=0) / np.maximum(left, 1e-12)[:, None]
@@ -217,37 +233,48 @@ def _settle_parts(seen, nearest, candidates, planes, heights, slopes, beams, obs
         np.concatenate([obstacle[lit], behind_all[remains]]),
         np.concatenate([share[lit], left[remains]]),
         beams.directions[part_beam] + centre,
+        nearest,
+        possible,
         heights,
     )
 
 
-def _sample_parts(row, beam, obstacle, group, seen, planes, heights, normals, beams):
+def _sample_parts(row, beam, obstacle, sine, group, seen, planes, heights, normals, beams):
     """Shares of beams that several edges cross, by a grid of rays: each ray meets one obstacle, so nothing leaks."""
     step = (np.arange(_SUBRAYS) + 0.5) * 2 / _SUBRAYS - 1
-    grid = np.stack(np.meshgrid(step, step, indexing="ij"), axis=-1).reshape(-1, 2)
+    grid = np.stack(np.meshgrid(step, step, indexing="ij")).reshape(2, -1)
     starts = np.flatnonzero(np.concatenate(([True], group[1:] != group[:-1])))
-    head_row, head_beam = row[starts], beam[starts]
-    shift = np.einsum("sa,gac->gsc", grid, beams.axes[head_beam] * beams.half_widths[head_beam][:, :, None])
-    rays = beams.directions[head_beam][:, None] + shift
     local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(group))))
-    mine = rays[local]
-    inside = (np.einsum("nwc,nsc->nws", planes[row, obstacle], mine) >= -1e-12).all(axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        distance = heights[row, obstacle][:, None] / np.einsum("nsc,nc->ns", mine, normals[obstacle])
-        background = seen[head_row, head_beam]
-        known = background >= 0
-        far = np.full((len(starts), len(grid)), np.inf)
-        b = background[known]
-        far[known] = heights[head_row[known], b][:, None] / np.einsum("gsc,gc->gs", rays[known], normals[b])
-    far[~(far > 0)] = np.inf
-    distance = np.where(inside & (distance > 0), distance, np.inf)
+    head_row, head_beam = row[starts], beam[starts]
+    spans = beams.axes[head_beam] * beams.half_widths[head_beam][:, :, None]
+    mine = spans[local]
+    # sines and slopes are linear in the ray's place across the beam
+    tilt = np.matmul(planes[row, obstacle], mine.transpose(0, 2, 1))
+    inside = np.ones((len(row), grid.shape[1]), bool)
+    for edge in range(sine.shape[1]):
+        inside &= sine[:, edge, None] + tilt[:, edge] @ grid >= -_ON_EDGE
+
+    def distances(rows, beams_, obstacles_, across):
+        normal = normals[obstacles_]
+        slope = np.einsum("nc,nc->n", beams.directions[beams_], normal)[:, None] + np.einsum("nac,nc->na", across, normal) @ grid
+        with np.errstate(divide="ignore", invalid="ignore"):
+            along = heights[rows, obstacles_][:, None] / slope
+        return np.where(along > 0, along, np.inf)
+
+    distance = np.where(inside, distances(row, beam, obstacle, mine), np.inf)
+    background = seen[head_row, head_beam]
+    known = background >= 0
+    far = np.full((len(starts), grid.shape[1]), np.inf)
+    far[known] = distances(head_row[known], head_beam[known], background[known], spans[known])
     best = np.minimum.reduceat(distance, starts, axis=0)
     hit = np.isfinite(distance) & (distance <= best[local]) & (distance < far[local] * (1 - 1e-9))
     winners = np.add.reduceat(hit.astype(float), starts, axis=0)
     hit = hit / np.maximum(winners[local], 1.0)
-    share = hit.mean(axis=1)
-    offset = np.einsum("ns,nsc->nc", hit, shift[local]) / np.maximum(hit.sum(axis=1), 1e-12)[:, None]
     free = (winners == 0).astype(float)
-    rest = free.mean(axis=1)
-    rest_offset = np.einsum("gs,gsc->gc", free, shift) / np.maximum(free.sum(axis=1), 1e-12)[:, None]
-    return share, offset, rest, rest_offset
+
+    def share_and_offset(weight, across):
+        total = weight.sum(axis=1)
+        place = weight @ grid.T / np.maximum(total, 1e-12)[:, None]
+        return total / grid.shape[1], np.einsum("na,nac->nc", place, across)
+
+    return *share_and_offset(hit, mine), *share_and_offset(free, spans)
