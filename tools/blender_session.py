@@ -33,6 +33,7 @@ def session() -> Iterator[None]:
         bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
         if PACKAGE not in bpy.context.preferences.addons:
             raise RuntimeError("Blender did not enable the extension; its messages above say why")
+        bpy.context.preferences.filepaths.save_version = 0  # no .blend1 beside what is saved
         try:
             yield
         finally:  # while its files are still there

@@ -57,6 +57,7 @@ def run(output: Path, pictures: bool) -> None:
     """Solve and draw all variants and hours with the running Blender."""
     import bpy
 
+    start = time.perf_counter()
     bpy.ops.wm.open_mainfile(filepath=str(HERE / "light_shelf.blend"))
     table = []
     for variant in room.VARIANTS.values():
@@ -79,7 +80,9 @@ def run(output: Path, pictures: bool) -> None:
     bpy.ops.wm.save_as_mainfile(filepath=str((output / "light_shelf_solved.blend").resolve()), copy=True)
     if pictures:
         write_sheet(output)
-    print(f"saved in {output}: {', '.join(sorted(path.name for path in output.iterdir()))}")
+    print(f"\n{time.perf_counter() - start:.1f} s in all; tables, pictures and the solved .blend are in {output}")
+    if pictures:
+        print(f"look at {output / 'sheet.png'} first")
 
 
 def print_table(title: str, rows) -> None:

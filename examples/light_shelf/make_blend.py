@@ -44,7 +44,6 @@ def write(path: Path) -> None:
                 set_view(area.spaces.active)
     path.parent.mkdir(parents=True, exist_ok=True)
     bpy.ops.wm.save_as_mainfile(filepath=str(path.resolve()), compress=True, check_existing=False)
-    path.with_suffix(".blend1").unlink(missing_ok=True)
 
 
 def add_scene(variant: room.Variant):

@@ -7,6 +7,8 @@ Specular surfaces are hatched in black: between the stripes stands the illuminan
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -58,7 +60,8 @@ def studio(
 
     def shoot(path: Path) -> None:
         scene.render.filepath = str(path.resolve())
-        bpy.ops.render.render(scene=scene.name, write_still=True)
+        with hushed():
+            bpy.ops.render.render(scene=scene.name, write_still=True)
 
     try:
         yield shoot
@@ -68,6 +71,20 @@ def studio(
         for material in materials:
             bpy.data.materials.remove(material)
         bpy.data.scenes.remove(scene)
+
+
+@contextmanager
+def hushed() -> Iterator[None]:
+    """Drop what Blender itself prints on every frame; it writes past Python's ``sys.stdout``."""
+    sys.stdout.flush()
+    kept, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nothing, 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nothing)
 
 
 def set_up_cycles(scene: bpy.types.Scene, size: int) -> None:
