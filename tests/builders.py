@@ -1,0 +1,90 @@
+"""Scenes and independent rays that the solver's tests share; none of it uses the solver's own geometry."""
+
+import math
+
+import numpy as np
+
+import luzespecular as luz
+from luzespecular import fracture, transfer
+
+BLACK = luz.Material()
+DARK = luz.Daylight()
+UNIFORM = luz.Daylight(sky=luz.UniformSky(1000.0))
+
+
+def box_polygons(size=(1.0, 1.0, 1.0), origin=(0.0, 0.0, 0.0)):
+    """Name -> (4, 3): the six sides of a box, normals inwards."""
+    corner = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]) * size
+    sides = {
+        "floor": (0, 1, 2, 3),
+        "ceiling": (7, 6, 5, 4),
+        "south": (0, 4, 5, 1),
+        "north": (2, 6, 7, 3),
+        "west": (0, 3, 7, 4),
+        "east": (1, 5, 6, 2),
+    }
+    return {name: corner[list(index)] + np.asarray(origin) for name, index in sides.items()}
+
+
+def scene_of(polygons, material=BLACK, **others):
+    """Scene of named polygons: ``material`` for all but those named in ``others``."""
+    scene = luz.Scene()
+    for name, polygon in polygons.items():
+        scene.add(name, polygon, others.get(name, material))
+    return scene
+
+
+def box(material=BLACK, size=(1.0, 1.0, 1.0), without=(), **others):
+    """Scene of a box seen from inside."""
+    return scene_of({k: v for k, v in box_polygons(size).items() if k not in without}, material, **others)
+
+
+def prepare_coarse(scene, elements=200, patches=100, **options):
+    """`luz.prepare` with few receivers and patches: for what does not depend on their number, and is quick then."""
+    kept = fracture.FEWEST_ELEMENTS, transfer.PATCHES
+    fracture.FEWEST_ELEMENTS, transfer.PATCHES = elements, patches
+    try:
+        return luz.prepare(scene, **{"bands": 24, "max_area": math.inf, **options})
+    finally:
+        fracture.FEWEST_ELEMENTS, transfer.PATCHES = kept
+
+
+def flux(result, name):
+    """Lumens that arrive on a surface's front."""
+    faces = result.faces_of(name)
+    return float(result.illuminance[faces] @ result.areas[faces])
+
+
+def frame(normal):
+    """Two unit vectors across a unit normal."""
+    helper = np.eye(3)[np.argmin(np.abs(normal))]
+    first = np.cross(normal, helper)
+    first /= np.linalg.norm(first)
+    return first, np.cross(normal, first)
+
+
+def cosine_rays(normal, side=400):
+    """(side², 3): directions above a plane, each standing for the same share of what the plane receives."""
+    normal = np.asarray(normal, float) / np.linalg.norm(normal)
+    step = (np.arange(side) + 0.5) / side
+    radius, turn = np.meshgrid(np.sqrt(step), 2 * math.pi * step, indexing="ij")
+    first, second = frame(normal)
+    flat = (radius * np.cos(turn)).reshape(-1, 1) * first + (radius * np.sin(turn)).reshape(-1, 1) * second
+    return flat + np.sqrt(1 - radius.reshape(-1, 1) ** 2) * normal
+
+
+def first_hits(point, rays, polygons):
+    """Index of the nearest convex polygon along each ray from a point, -1 where there is none."""
+    best, hit = np.full(len(rays), np.inf), np.full(len(rays), -1)
+    for number, polygon in enumerate(polygons):
+        polygon = np.asarray(polygon, float)
+        normal = sum(np.cross(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]) for k in range(1, len(polygon) - 1))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            distance = ((polygon[0] - point) @ normal) / (rays @ normal)
+            place = point + distance[:, None] * rays
+        inside = distance > 1e-9
+        for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+            inside &= (place - a) @ np.cross(normal, b - a) >= 0
+        nearer = inside & (distance < best)
+        best[nearer], hit[nearer] = distance[nearer], number
+    return hit

@@ -1,0 +1,19 @@
+"""Fixtures for all tests."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="session")
+def light_shelf():
+    """The paper's room as the bundled study builds it: ``light_shelf.scene("S1")``, ``light_shelf.daylight(12.0)``."""
+    spec = importlib.util.spec_from_file_location("light_shelf_room", ROOT / "examples" / "light_shelf" / "room.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up
+    spec.loader.exec_module(module)
+    return module

@@ -1,0 +1,224 @@
+"""Polygons: areas, clipping, convex parts, and Lambert's form factor against the corner formulas."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from luzespecular import polygons
+
+NUMBERS = st.floats(-1.0, 1.0)
+VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS).map(np.array)
+
+
+def regular(corners, radius=1.0, height=0.0):
+    turn = 2 * math.pi * np.arange(corners) / corners
+    return np.stack([radius * np.cos(turn), radius * np.sin(turn), np.full(corners, height)], axis=1)
+
+
+@st.composite
+def simple_loops(draw):
+    """Star-shaped loops, so never self-crossing, mostly concave; counter-clockwise."""
+    count = draw(st.integers(3, 14))
+    radius = np.array(draw(st.lists(st.floats(0.1, 2.0), min_size=count, max_size=count)))
+    shift = np.array(draw(st.lists(st.floats(0, 0.6), min_size=count, max_size=count)))
+    turn = 2 * math.pi * (np.arange(count) + shift) / count
+    gaps = np.diff(np.append(turn, turn[0] + 2 * math.pi))
+    assume(gaps.max() < math.pi - 0.05)
+    return radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1) + draw(st.floats(-5, 5))
+
+
+def flat_area(loop):
+    x, y = np.asarray(loop).T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+@pytest.mark.parametrize("corners", [3, 4, 5, 64])
+def test_area_and_normal_of_regular_polygons(corners):
+    polygon = regular(corners, 2.0, 5.0)
+    area = 0.5 * corners * 4 * math.sin(2 * math.pi / corners)
+    assert polygons.areas(polygon) == pytest.approx(area)
+    np.testing.assert_allclose(polygons.newell_normal(polygon), [0, 0, 2 * area], atol=1e-12)
+    np.testing.assert_allclose(polygons.newell_normal(polygon[::-1]), [0, 0, -2 * area], atol=1e-12)
+
+
+def test_area_far_from_the_origin():
+    assert polygons.areas(regular(4) + 1e8) == pytest.approx(2, rel=1e-6)
+
+
+def test_padding_changes_neither_area_nor_normal():
+    padded, counts = polygons.pad([regular(3), regular(6)])
+    assert padded.shape == (2, 6, 3) and counts.tolist() == [3, 6]
+    np.testing.assert_allclose(polygons.areas(padded), [polygons.areas(regular(3)), polygons.areas(regular(6))])
+    np.testing.assert_array_equal(padded[0, 3:], np.broadcast_to(regular(3)[-1], (3, 3)))
+    empty, none = polygons.pad([])
+    assert empty.shape == (0, 3, 3) and len(none) == 0
+
+
+@given(VECTORS)
+def test_plane_basis_is_right_handed(vector):
+    length = np.linalg.norm(vector)
+    assume(length > 1e-3)
+    first, second = polygons.plane_basis(vector / length)
+    np.testing.assert_allclose(np.cross(first, second), vector / length, atol=1e-12)
+    assert abs(first @ second) < 1e-12 and np.linalg.norm(first) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("normal", [(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)])
+def test_plane_basis_follows_the_axes_of_rooms(normal):
+    basis = polygons.plane_basis(np.array(normal, float))
+    np.testing.assert_allclose(np.sort(np.abs(basis), axis=1), [[0, 0, 1], [0, 0, 1]])
+
+
+def test_simplify_drops_repeated_and_collinear_corners():
+    loop = [[0, 0], [0.5, 0], [1, 0], [1, 0], [1, 1], [1, 1], [0.3, 1], [0.2, 1], [0, 1], [0, 0.5]]
+    kept = polygons.simplify(loop, 1e-9)
+    assert {tuple(p) for p in kept} == {(0, 0), (1, 0), (1, 1), (0, 1)}
+    assert flat_area(kept) == pytest.approx(1)
+
+
+@given(simple_loops())
+def test_simplify_keeps_the_area(loop):
+    assert flat_area(polygons.simplify(loop, 1e-9)) == pytest.approx(flat_area(loop), abs=1e-7)
+
+
+@given(simple_loops())
+def test_simple_loops_do_not_cross_themselves(loop):
+    assert not polygons.crosses_itself(loop)
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        [[0, 0], [2, 2], [2, 0], [0, 1]],
+        [[0, 0], [1, 1], [1, 0], [0, 1]],
+        [[math.cos(4 * math.pi * k / 5), math.sin(4 * math.pi * k / 5)] for k in range(5)],
+        [[0, 0], [4, 0], [4, 2], [2, -1], [0, 2]],
+    ],
+    ids=["bow-tie", "even bow-tie", "pentagram", "dip"],
+)
+def test_crossing_loops(loop):
+    assert polygons.crosses_itself(np.array(loop, float))
+
+
+def test_touching_is_no_crossing():
+    bridged = [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0], [1, 1], [1, 3], [3, 3], [3, 1], [1, 1]]
+    assert not polygons.crosses_itself(np.array(bridged, float))
+    assert not polygons.crosses_itself(np.array([[0, 0], [1, 0], [0, 1]], float))
+
+
+def test_convexity():
+    assert polygons.is_convex(regular(7)[:, :2], 1e-9)
+    assert polygons.is_convex(np.array([[0, 0], [1, 0], [2, 0], [2, 1], [0, 1]], float), 1e-9), "straight corners count"
+    assert not polygons.is_convex(np.array([[0, 0], [2, 0], [2, 2], [1, 0.5]], float), 1e-9)
+    assert not polygons.is_convex(np.concatenate([regular(5)[:, :2]] * 2), 1e-9), "twice around is not convex"
+
+
+@given(simple_loops())
+def test_triangles_cover_the_loop(loop):
+    triangles = np.asarray(loop)[polygons.triangulate(loop)]
+    signed = [flat_area(t) for t in triangles]
+    assert min(signed) > 0
+    assert sum(signed) == pytest.approx(flat_area(loop), rel=1e-9)
+
+
+@given(simple_loops())
+def test_convex_parts_cover_the_loop(loop):
+    parts = polygons.convex_parts(loop, 1e-9)
+    assert all(polygons.is_convex(part, 1e-7) for part in parts)
+    assert sum(flat_area(part) for part in parts) == pytest.approx(flat_area(loop), rel=1e-7)
+    assert len(parts) <= len(loop) - 2
+
+
+@given(simple_loops(), NUMBERS, NUMBERS)
+def test_convex_parts_overlap_nowhere(loop, x, y):
+    point = np.array([2 * x, 2 * y]) + np.mean(loop, axis=0)
+
+    def holds(polygon, margin):
+        edge = np.roll(polygon, -1, axis=0) - polygon
+        away = edge[:, 0] * (point - polygon)[:, 1] - edge[:, 1] * (point - polygon)[:, 0]
+        return (away > margin).all()
+
+    assert sum(holds(part, 1e-9) for part in polygons.convex_parts(loop, 1e-9)) <= 1
+
+
+@given(simple_loops(), VECTORS, NUMBERS)
+def test_clipping_shares_out_the_area(loop, normal, offset):
+    assume(np.linalg.norm(normal) > 0.1)
+    parts = [np.c_[part, np.zeros(len(part))] for part in polygons.convex_parts(loop, 1e-9)]
+    batch, _ = polygons.pad(parts)
+    one, other = polygons.clip(batch, normal, offset), polygons.clip(batch, -normal, -offset)
+    np.testing.assert_allclose(polygons.areas(one) + polygons.areas(other), polygons.areas(batch), atol=1e-9)
+    kept = polygons.areas(one) > 1e-9
+    assert (one[kept] @ normal >= offset - 1e-9).all()
+    up = polygons.newell_normal(one)[kept]
+    assert (up[:, 2] > 0).all(), "orientation stays"
+
+
+def test_clipping_by_hand():
+    batch = regular(4) + np.array([[[0, 0, 0]], [[5, 0, 0]], [[-5, 0, 0]]])
+    np.testing.assert_allclose(polygons.areas(polygons.clip(batch, [1, 0, 0])), [1, 2, 0], atol=1e-15)
+    np.testing.assert_allclose(polygons.areas(polygons.clip(batch, [1, 0, 0], [0.5, 4.5, -4.5])), [0.25, 1.75, 0.25])
+    each = polygons.clip(batch, [[1, 0, 0], [-1, 0, 0], [-1, 0, 0]])
+    np.testing.assert_allclose(polygons.areas(each), [1, 0, 2], atol=1e-15)
+    assert polygons.clip(batch[:0], [1, 0, 0]).shape[0] == 0
+
+
+def parallel_corner(a, b, c):
+    """Element under the corner of a parallel rectangle a × b at distance c (Howell's catalogue B-3)."""
+    x, y = a / c, b / c
+    one = x / math.hypot(1, x) * math.atan(y / math.hypot(1, x))
+    return (one + y / math.hypot(1, y) * math.atan(x / math.hypot(1, y))) / (2 * math.pi)
+
+
+def perpendicular_corner(a, b, c):
+    """Element at distance c from the lower corner of a perpendicular rectangle, a high and b wide (Howell B-4)."""
+    x, y = a / b, c / b
+    root = math.hypot(x, y)
+    return (math.atan(1 / y) - y / root * math.atan(1 / root)) / (2 * math.pi)
+
+
+SIZES = st.floats(0.01, 50.0)
+
+
+@given(SIZES, SIZES, SIZES)
+def test_lambert_parallel_rectangle(a, b, c):
+    ceiling = np.array([[[0, b, c], [a, b, c], [a, 0, c], [0, 0, c]]])
+    got = polygons.lambert_form_factor(ceiling, [0, 0, 1])[0]
+    assert got == pytest.approx(parallel_corner(a, b, c), rel=1e-6, abs=1e-12)
+    assert polygons.lambert_form_factor(ceiling[:, ::-1], [0, 0, 1])[0] == pytest.approx(-got)
+
+
+@given(SIZES, SIZES, SIZES)
+def test_lambert_perpendicular_rectangle(a, b, c):
+    wall = np.array([[[c, 0, 0], [c, 0, a], [c, b, a], [c, b, 0]]])[:, ::-1]
+    got = abs(polygons.lambert_form_factor(wall, [0, 0, 1])[0])
+    assert got == pytest.approx(perpendicular_corner(a, b, c), rel=1e-5, abs=1e-12)
+
+
+def test_lambert_adds_up_over_parts_and_turns_with_the_scene():
+    whole = np.add(regular(5, 1.0, 0.5)[::-1], [0.2, 0.1, 0])
+    parts, _ = polygons.pad([whole[:3], whole[[0, 2, 3]], whole[[0, 3, 4]]])
+    one = polygons.lambert_form_factor(whole[None], [0, 0, 1])[0]
+    assert polygons.lambert_form_factor(parts, [0, 0, 1]).sum() == pytest.approx(one, rel=1e-12)
+    turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    assert polygons.lambert_form_factor(whole[None] @ turn.T, turn @ [0, 0, 1])[0] == pytest.approx(one, rel=1e-12)
+    assert polygons.lambert_form_factor(whole[None] * 1e-6, [0, 0, 1])[0] == pytest.approx(one, rel=1e-12)
+
+
+def test_lambert_of_a_disc():
+    """Element on the axis of a parallel disc: sin² of the half angle; a polygon of many sides is nearly one."""
+    for radius, height in ((1, 1), (0.5, 2), (3, 0.2)):
+        disc = regular(400, radius, height)[::-1]
+        exact = radius**2 / (radius**2 + height**2)
+        assert polygons.lambert_form_factor(disc[None], [0, 0, 1])[0] == pytest.approx(exact, rel=1e-4)
+
+
+def test_lambert_takes_one_normal_for_each():
+    ceiling = np.array([[[0, 1, 1], [1, 1, 1], [1, 0, 1], [0, 0, 1.0]]] * 2)
+    got = polygons.lambert_form_factor(ceiling, [[0, 0, 1], [1, 0, 0]])
+    assert got[0] == pytest.approx(parallel_corner(1, 1, 1))
+    assert got[1] == pytest.approx(perpendicular_corner(1, 1, 1))
+    assert len(polygons.lambert_form_factor(ceiling[:0], [0, 0, 1])) == 0
