@@ -177,5 +177,5 @@ def _log_ticks(low: float, high: float, most: int) -> NDArray[np.float64]:
 
 def _linear_ticks(low: float, high: float, most: int) -> NDArray[np.float64]:
     step = _round_up((high - low) / most)
-    ticks = step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1)
-    return ticks
+    first, last = round(np.ceil(low / step - 1e-9)), round(np.floor(high / step + 1e-9))
+    return step * np.arange(first, last + 1)

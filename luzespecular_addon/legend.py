@@ -11,6 +11,7 @@ from gpu_extras.batch import batch_for_shader
 
 from . import colours, display
 from .properties import QUANTITY_ITEMS
+from .translations import CONTEXT
 
 _STEPS = 64
 _MARGIN, _WIDTH, _HEIGHT, _PADDING, _TEXT = 24, 18, 220, 10, 12  # pixels at a resolution scale of 1
@@ -80,7 +81,7 @@ def title(scene: bpy.types.Scene) -> str:
     settings = scene.luzespecular.display
     quantity = settings.quantity if settings.view == "RESULTS" else "illuminance"
     name = next(name for key, name, _ in QUANTITY_ITEMS if key == quantity)
-    return f"{iface_('Illuminance')}: {iface_(name)} [lx]"
+    return f"{iface_('Illuminance')}: {iface_(name, CONTEXT)} [lx]"
 
 
 def _left_edge() -> float:

@@ -74,7 +74,7 @@ class LUZESPECULAR_PT_site(_Sidebar, bpy.types.Panel):
         row.active = site.time_kind == "CLOCK"
         row.prop(site, "time_zone")
         layout.prop(site, "north_offset")
-        _draw_sun(layout.box().column(align=True), site)
+        _draw_sun(layout.box().column(align=True), site, context.region.width)
 
 
 class LUZESPECULAR_PT_sky(_Sidebar, bpy.types.Panel):
@@ -130,13 +130,7 @@ class LUZESPECULAR_UL_surfaces(bpy.types.UIList):
 
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, _index):
         """Draw one surface."""
-        split = layout.split(factor=0.4)
-        split.label(text=_side_name(item), translate=False)
-        row = split.row()
-        for value in (item.minimum, item.mean, item.maximum):
-            cell = row.row()
-            cell.alignment = "RIGHT"
-            cell.label(text=f"{value:.0f}", translate=False)
+        _draw_columns(layout, _side_name(item), *map(_short, (item.minimum, item.mean, item.maximum)))
 
 
 class LUZESPECULAR_PT_results(_Sidebar, bpy.types.Panel):
@@ -155,10 +149,10 @@ class LUZESPECULAR_PT_results(_Sidebar, bpy.types.Panel):
             return
         settings, results = scene.luzespecular.display, scene.luzespecular.results
         layout.label(text=results.title, translate=False)
+        layout.row().prop(settings, "view", expand=True)
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
-        column.row().prop(settings, "view", expand=True)
         fine = column.column()
         fine.active = settings.view == "RESULTS"
         fine.prop(settings, "show_backs")
@@ -225,17 +219,17 @@ def _side_name(row: bpy.types.PropertyGroup) -> str:
     return row.name if row.side == "front" else iface_("{name} (back)").format(name=row.name)
 
 
-def _draw_sun(column: bpy.types.UILayout, site: bpy.types.PropertyGroup) -> None:
+def _draw_sun(column: bpy.types.UILayout, site: bpy.types.PropertyGroup, width: float) -> None:
     try:
         place = light.sun_place(site)
         rise, fall = light.sunrise_sunset(site)
     except (BadInput, luz.SceneError) as error:
-        column.label(text=str(error), icon="ERROR", translate=False)
+        _draw_wrapped(column, str(error), "ERROR", width)
         return
     text = iface_("Sun: altitude {altitude:.1f}°, azimuth {azimuth:.1f}°")
     column.label(text=text.format(altitude=place.altitude, azimuth=place.azimuth), icon="LIGHT_SUN", translate=False)
     if not place.is_up:
-        column.label(text="The Sun is below the horizon: only the sky is solved", icon="INFO")
+        _draw_wrapped(column, iface_("The Sun is below the horizon: only the sky is solved"), "INFO", width)
     if rise is not None and fall is not None:
         text = iface_("Sunrise {rise}, sunset {fall}").format(rise=light.clock(rise), fall=light.clock(fall))
         column.label(text=text, icon="BLANK1", translate=False)
@@ -259,19 +253,32 @@ def _draw_optics(column: bpy.types.UILayout, optics: materials.Optics) -> None:
 
 
 def _draw_table(layout: bpy.types.UILayout, results: bpy.types.PropertyGroup) -> None:
-    header = layout.split(factor=0.4)
-    header.label(text="Surface")
-    row = header.row()
-    for text in (iface_("Min (lx)"), iface_("Mean (lx)"), iface_("Max (lx)")):
-        cell = row.row()
-        cell.alignment = "RIGHT"
-        cell.label(text=text, translate=False)
+    _draw_columns(layout, iface_("Surface [lx]"), iface_("Min"), iface_("Mean"), iface_("Max"))
     layout.template_list("LUZESPECULAR_UL_surfaces", "", results, "rows", results, "active_row", rows=5)
     if 0 <= results.active_row < len(results.rows):
         chosen = results.rows[results.active_row]
+        column = layout.column(align=True)
         text = iface_("{name}: {area:.2f} m², uniformity {uniformity:.2f}")
         text = text.format(name=_side_name(chosen), area=chosen.area, uniformity=chosen.uniformity)
-        layout.label(text=text, translate=False)
+        column.label(text=text, translate=False)
+        text = iface_("Mean {mean:.1f} lx, from {minimum:.1f} to {maximum:.1f}")
+        text = text.format(mean=chosen.mean, minimum=chosen.minimum, maximum=chosen.maximum)
+        column.label(text=text, translate=False)
+
+
+def _draw_columns(layout: bpy.types.UILayout, name: str, *cells: str) -> None:
+    split = layout.split(factor=0.43)
+    split.label(text=name, translate=False)
+    row = split.row(align=True)
+    for text in cells:
+        cell = row.column()
+        cell.alignment = "RIGHT"
+        cell.label(text=text, translate=False)
+
+
+def _short(value: float) -> str:
+    """Return an illuminance in the width that a column has."""
+    return f"{value:.0f}" if value < 9_999.5 else f"{value / 1000.0:.1f}k"
 
 
 def _draw_wrapped(column: bpy.types.UILayout, text: str, icon: str, width: float) -> None:

@@ -3,18 +3,21 @@
 No postponed annotations here: Blender reads the annotations of property groups as values.
 """
 
+from functools import partial
+
 import bpy
-from bpy.props import (
-    BoolProperty,
-    CollectionProperty,
-    EnumProperty,
-    FloatProperty,
-    IntProperty,
-    PointerProperty,
-    StringProperty,
-)
+from bpy import props
+from bpy.props import CollectionProperty, PointerProperty
 
 from . import display
+from .translations import CONTEXT
+
+# In a context of their own, since Blender's own translation of a word goes first ("Clear" is a verb to it).
+BoolProperty = partial(props.BoolProperty, translation_context=CONTEXT)
+EnumProperty = partial(props.EnumProperty, translation_context=CONTEXT)
+FloatProperty = partial(props.FloatProperty, translation_context=CONTEXT)
+IntProperty = partial(props.IntProperty, translation_context=CONTEXT)
+StringProperty = partial(props.StringProperty, translation_context=CONTEXT)
 
 SKY_ITEMS = (
     ("CLEAR", "Clear", "Clear sky with Sun; illuminances by the availability model, from date and Sun altitude"),

@@ -17,6 +17,7 @@ from . import display, export, light, results_object, session, tables, writeback
 from .materials import as_typed
 from .notices import Notice, refuse, stop_on_errors
 from .properties import SKY_ITEMS
+from .translations import CONTEXT
 
 Progress = Callable[[float, str], bool]
 
@@ -117,7 +118,7 @@ def title(scene: bpy.types.Scene) -> str:
     site, sky = settings.site, settings.sky
     kind = next(name for key, name, _ in SKY_ITEMS if key == sky.kind)
     time = iface_("solar time") if site.time_kind == "SOLAR" else iface_("clock time")
-    return f"{light.date_of(site).isoformat()}, {light.clock(site.hour)} {time}, {iface_(kind)}"
+    return f"{light.date_of(site).isoformat()}, {light.clock(site.hour)} {time}, {iface_(kind, CONTEXT)}"
 
 
 def _options(accuracy: bpy.types.PropertyGroup, area: float) -> dict:

@@ -97,10 +97,19 @@ def test_every_text_is_translated(addon):
 
 
 def test_nothing_is_translated_that_nobody_sees(addon):
-    # Stages are named by the solver; "LuzEspecular" texts come from elsewhere.
-    extra = sorted(set(addon.translations.table()["pt_BR"]) - interface_texts())
-    stages = set(addon.translations.STAGES)
-    assert not [entry for entry in extra if entry[1] not in stages]
+    seen = {text for _, text in interface_texts()} | set(addon.translations.STAGES)  # the solver names the stages
+    assert not [text for _, text in addon.translations.table()["pt_BR"] if text not in seen]
+
+
+def test_names_of_properties_have_a_context_of_their_own(addon, bpy):
+    # Blender's own translation goes before an extension's: "Clear" would read as the verb.
+    context = addon.translations.CONTEXT
+    assert (context, "Clear") in addon.translations.table()["pt_BR"]
+    for group in ("site", "sky", "accuracy", "display"):
+        rna = bpy.types.Scene.bl_rna.properties["luzespecular"].fixed_type.properties[group].fixed_type
+        for name, own in rna.properties.items():
+            if name not in ("rna_type", "name"):
+                assert own.translation_context == context, name
 
 
 def test_placeholders_agree(addon):
