@@ -45,25 +45,29 @@ def main() -> int:
     """Read the command line and run everything."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--output", type=Path, default=Path("build/demo"), help="folder for tables and pictures")
+    parser.add_argument(
+        "--variants", nargs="+", choices=room.VARIANTS, default=list(room.VARIANTS), help="which to solve"
+    )
+    parser.add_argument("--hours", nargs="+", type=float, default=list(room.HOURS), help="solar time")
     parser.add_argument("--no-pictures", action="store_true", help="print and save the tables only")
     arguments = parser.parse_args()
     arguments.output.mkdir(parents=True, exist_ok=True)
     with blender_session.session():
-        run(arguments.output, pictures=not arguments.no_pictures)
+        run(arguments.output, arguments.variants, arguments.hours, pictures=not arguments.no_pictures)
     return 0
 
 
-def run(output: Path, pictures: bool) -> None:
-    """Solve and draw all variants and hours with the running Blender."""
+def run(output: Path, variants: list[str], hours: list[float], pictures: bool) -> None:
+    """Solve and draw variants and hours with the running Blender."""
     import bpy
 
     start = time.perf_counter()
     bpy.ops.wm.open_mainfile(filepath=str(HERE / "light_shelf.blend"))
     table = []
-    for variant in room.VARIANTS.values():
+    for variant in map(room.VARIANTS.get, variants):
         scene = bpy.data.scenes[f"{variant.key} {variant.title}"]
         bpy.context.window.scene = scene
-        for hour in room.HOURS:
+        for hour in hours:
             begin = time.perf_counter()
             scene.luzespecular.site.hour = hour
             bpy.ops.luzespecular.solve()
@@ -75,11 +79,11 @@ def run(output: Path, pictures: bool) -> None:
             print_table(f"{variant.key} ({variant.title}), {hour:g} h, clear sky and Sun: {seconds:.2f} s", rows)
             if pictures:
                 hatched = [i for i, (name, _) in enumerate(rows) if name in variant.specular]
-                draw(scene, output, f"{variant.key}_{hour:02.0f}h", hatched)
+                draw(scene, output, stem(variant.key, hour), hatched)
     write_table(output / "lux_per_surface.csv", table)
     bpy.ops.wm.save_as_mainfile(filepath=str((output / "light_shelf_solved.blend").resolve()), copy=True)
     if pictures:
-        write_sheet(output)
+        write_sheet(output, variants, hours)
     print(f"\n{time.perf_counter() - start:.1f} s in all; tables, pictures and the solved .blend are in {output}")
     if pictures:
         print(f"look at {output / 'sheet.png'} first")
@@ -100,18 +104,23 @@ def write_table(path: Path, table) -> None:
         writer.writerows((*row[:3], *(f"{value:.6g}" for value in row[3:])) for row in table)
 
 
-def draw(scene, output: Path, stem: str, hatched: list[int]) -> None:
+def stem(variant: str, hour: float) -> str:
+    """Return how the pictures of a run are called."""
+    return f"{variant}_{hour:04.1f}h".replace(".0h", "h")
+
+
+def draw(scene, output: Path, name: str, hatched: list[int]) -> None:
     """Render the fine faces, before and after the diffuse cycles."""
     import pictures
 
     results = next(obj for obj in scene.objects if obj.luzespecular.is_results)
     with pictures.studio(results, scene.camera, hatched, SIZE) as shoot:
-        for name, quantity in QUANTITIES.items():
+        for state, quantity in QUANTITIES.items():
             scene.luzespecular.display.quantity = quantity
-            shoot(output / f"{stem}_{name}.png")
+            shoot(output / f"{name}_{state}.png")
 
 
-def write_sheet(output: Path) -> None:
+def write_sheet(output: Path, variants: list[str], hours: list[float]) -> None:
     """Compose all pictures with captions and legend."""
     import importlib
 
@@ -123,12 +132,12 @@ def write_sheet(output: Path) -> None:
     scale = colours.ColourScale(display.scale, display.low, display.high, display.scaling == "LOG")
     legend = sheet.Legend(scale.low, scale.high, scale.logarithmic, scale.ticks(9), scale.position, scale.srgb)
     rows = []
-    for variant in room.VARIANTS.values():
+    for variant in map(room.VARIANTS.get, variants):
         cells = []
-        for hour in room.HOURS:
+        for hour in hours:
             for name in QUANTITIES:
                 figure = FIGURES.get((variant.key, hour, name))
-                path = output / f"{variant.key}_{hour:02.0f}h_{name}.png"
+                path = output / f"{stem(variant.key, hour)}_{name}.png"
                 cells.append(sheet.Cell(path, f"{hour:g} h, {name}", f"fig. {figure}" if figure else ""))
         rows.append((f"{variant.key}: {variant.title}", cells))
     notes = [

@@ -18,7 +18,7 @@ import numpy as np
 
 COLOURS = "luzespecular"
 SURFACE = "surface"
-STRIPE = 0.07  # m, measured along the sum of the three axes
+STRIPES = (7.0, 0.0, 4.0)  # per metre along x, y, z: upright to the view on all that a room may have for mirrors
 SAMPLES = 8
 
 
@@ -117,7 +117,7 @@ def false_colour_material(hatch: bool) -> bpy.types.Material:
     if hatch:
         place, along = nodes.new("ShaderNodeNewGeometry"), nodes.new("ShaderNodeVectorMath")
         along.operation = "DOT_PRODUCT"
-        along.inputs[1].default_value = (0.5 / STRIPE,) * 3
+        along.inputs[1].default_value = STRIPES
         links.new(place.outputs["Position"], along.inputs[0])
         part, stripe = nodes.new("ShaderNodeMath"), nodes.new("ShaderNodeMath")
         part.operation, stripe.operation = "FRACT", "LESS_THAN"
