@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 
@@ -47,3 +48,7 @@ def test_uniform_sky_at_the_centre_of_the_bottom(example):
             signed = [math.copysign(corner_factor(abs(x), abs(y), length), x * y) for x in edges[:2] for y in edges[2:]]
             exact += pipes.REFLECTANCE ** (abs(i) + abs(j)) * (signed[3] - signed[2] - signed[1] + signed[0])
     assert result.at([[width / 2, width / 2, 0]], [[0, 0, 1]])[0] == pytest.approx(exact, rel=5e-3)
+    steps = width * (0.05 + 0.1 * np.arange(10))
+    grid = np.array([[x, y, 0.0] for x in steps for y in steps])
+    points = result.at(grid, np.broadcast_to([0.0, 0.0, 1.0], grid.shape))
+    assert result.mean("bottom") == pytest.approx(points.mean(), rel=5e-3)
