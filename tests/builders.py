@@ -63,14 +63,17 @@ def frame(normal):
     return first, np.cross(normal, first)
 
 
-def cosine_rays(normal, side=400):
-    """(side², 3): directions above a plane, each standing for the same share of what the plane receives."""
+def cosine_rays(normal, count=200_000):
+    """(count, 3): directions above a plane, each standing for the same share of what the plane receives.
+
+    Places on the disc by the additive recurrence of Roberts (2018), far more even than random ones.
+    """
     normal = np.asarray(normal, float) / np.linalg.norm(normal)
-    step = (np.arange(side) + 0.5) / side
-    radius, turn = np.meshgrid(np.sqrt(step), 2 * math.pi * step, indexing="ij")
+    number = np.arange(count)[:, None]
+    share, turn = ((0.5 + number * [0.7548776662466927, 0.5698402909980532]) % 1).T[:, :, None]
     first, second = frame(normal)
-    flat = (radius * np.cos(turn)).reshape(-1, 1) * first + (radius * np.sin(turn)).reshape(-1, 1) * second
-    return flat + np.sqrt(1 - radius.reshape(-1, 1) ** 2) * normal
+    level = np.cos(2 * math.pi * turn) * first + np.sin(2 * math.pi * turn) * second
+    return np.sqrt(share) * level + np.sqrt(1 - share) * normal
 
 
 def first_hits(point, rays, polygons):
