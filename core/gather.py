@@ -138,7 +138,8 @@ def _whole_beams(s: Sighting, targets: Targets, unlit: np.ndarray):
             if dead:
                 unlit[s.rows[rows]] += dead * np.where(seen, weights, 0.0).sum(axis=1)
                 continue
-            cell = _grid_cells(s, targets, sheet, back * fronts, rows, columns, s.view.nearest[here])
+            distance = np.where(seen, s.view.nearest[here], np.float32(0))  # elsewhere it may be infinite
+            cell = _grid_cells(s, targets, sheet, back * fronts, rows, columns, distance)
             row = np.broadcast_to(rows[:, None], seen.shape)[seen]
             yield row, grid.grid[base + cell[seen]], weights[seen]
 

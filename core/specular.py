@@ -22,7 +22,7 @@ from .visibility import SHARED, View, look
 DEEPEST_CHAIN = 200
 """No chain is followed further, even between perfect mirrors."""
 
-MANY_OUTLINES = 600
+MANY_OUTLINES = 2_500
 """Scenes of more outlines are looked at ray by ray."""
 
 _FEW_BEAMS = 2_500
@@ -275,7 +275,7 @@ class GroupSight:
             rows, origin, horizon, beyond, beams, weights, throughput, mirrored, chain = stack.pop()
             checkpoint()
             obstacles = self._cut(chain, [horizon, *beyond])
-            view = look(origin, beams, obstacles, self.outlines.tolerance)
+            view = look(origin, beams, obstacles, self.outlines.tolerance, beyond[0] if beyond else None)
             sighting = Sighting(rows, origin, horizon.normal, beams, obstacles, view, weights, mirrored, self.outlines)
             yield sighting
             if self.outlines.any_specular:

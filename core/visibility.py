@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .projection import Beams, Obstacles, coverage, edge_planes
+from .projection import Beams, HalfSpace, Obstacles, coverage, edge_planes
 
 OPEN = -1
 """Nothing in the way: sky or ground light."""
@@ -61,7 +61,7 @@ class View:
     heights: np.ndarray
 
 
-def look(points, beams: Beams, obstacles: Obstacles, tolerance: float) -> View:
+def look(points, beams: Beams, obstacles: Obstacles, tolerance: float, past: HalfSpace | None = None) -> View:
     """Find the nearest obstacle along each beam from each point.
 
     Parameters
@@ -73,6 +73,8 @@ def look(points, beams: Beams, obstacles: Obstacles, tolerance: float) -> View:
         Cut to what these beams can meet.
     tolerance : float
         Distance below which a point lies in a plane [m].
+    past : HalfSpace, optional
+        Only what the beams meet inside it counts: beyond the mirror or pane that they come through.
 
     Returns
     -------
@@ -86,6 +88,7 @@ def look(points, beams: Beams, obstacles: Obstacles, tolerance: float) -> View:
     reach = beams.reach * 1.01 + 1e-6
     hull = _bounding_corners(points)
     slopes = beams.directions @ obstacles.normals.T
+    start = np.zeros((len(points), 1), np.float32) if past is None else _distance_to(past, points, beams.directions)
     found = []
     width = obstacles.bounding.shape[1]
     possible: dict[int, np.ndarray] = {}
@@ -108,6 +111,9 @@ def look(points, beams: Beams, obstacles: Obstacles, tolerance: float) -> View:
             near = np.flatnonzero(np.abs(inside, out=inside) <= limit)
             if len(near):
                 row, column = np.divmod(near, len(columns))
+                if past is not None:
+                    ahead = ~((distance[row, column] > 0) & (distance[row, column] < start[row, columns[column]]))
+                    near, row, column = near[ahead], row[ahead], column[ahead]
                 sine = np.full((len(near), width), np.inf, np.float32)
                 for edge, values in zip(np.flatnonzero(bounded), sines, strict=True):
                     sine[:, edge] = values.ravel()[near]
@@ -116,7 +122,7 @@ def look(points, beams: Beams, obstacles: Obstacles, tolerance: float) -> View:
             whole = np.ones(distance.shape, bool)
         before = nearest[:, columns]
         whole &= distance < before
-        whole &= distance > 0
+        whole &= distance > (start if past is None else start[:, columns])
         if whole.any():
             nearest[:, columns] = np.where(whole, distance, before)
             seen[:, columns] = np.where(whole, np.int32(o), seen[:, columns])
@@ -126,6 +132,13 @@ def look(points, beams: Beams, obstacles: Obstacles, tolerance: float) -> View:
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
     candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
     return _settle_parts(seen, nearest, possible, candidates, planes, heights, slopes, beams, obstacles)
+
+
+def _distance_to(plane: HalfSpace, points: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """(r, k) float32: distance along each beam to a plane, a little less so that what stands on the plane counts."""
+    with np.errstate(divide="ignore", over="ignore"):
+        slope = (1.0 / (directions @ plane.normal)).astype(np.float32)
+    return (plane.offset - points @ plane.normal).astype(np.float32)[:, None] * slope * np.float32(1 - 1e-5)
 
 
 def _bounding_corners(points: np.ndarray) -> np.ndarray:
