@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 class Balance:
     """Lumens of a scene.
 
-    Light counts where it lands, after any specular chain. What lands is absorbed or diffusely reflected; what is reflected
-    or emitted lands again, escapes, is lost on dark backs, or is cut off with its chain.
+    Light counts where it lands, after any specular chain. What lands is absorbed or diffusely reflected; what is
+    reflected or emitted lands again, escapes, is lost on dark backs, or is cut off with its chain.
 
     Attributes
     ----------
@@ -29,7 +29,8 @@ class Balance:
     escaped : float
         Emitted or reflected diffusely, and out through openings [lm].
     truncated : float
-        In specular chains that were cut off: sunlight exactly, other light as if what is behind the cut were as bright as the mean [lm].
+        In specular chains that were cut off: sunlight exactly, other light as if what is behind the cut were as
+        bright as the mean [lm].
     defect : float
         What fails to close the balance, relative to ``entering``.
     """
@@ -64,7 +65,14 @@ def lumen_balance(result: Result) -> Balance:
     # light from outside that is cut with its chain never lands, so it is no part of entering
     truncated = float(lost)
     if entering == 0:
-        return Balance(0.0, dict(zip(geometry.planes.surfaces, absorbed.tolist(), strict=True)), 0.0, 0.0, result.sunlight.truncated, 0.0)
+        return Balance(
+            0.0,
+            dict(zip(geometry.planes.surfaces, absorbed.tolist(), strict=True)),
+            0.0,
+            0.0,
+            result.sunlight.truncated,
+            0.0,
+        )
     defect = (entering - absorbed.sum() - escaped - unlit - truncated) / entering
     return Balance(
         entering=entering,
@@ -77,7 +85,7 @@ def lumen_balance(result: Result) -> Balance:
 
 
 def _cut_sky(result: Result) -> float:
-    """Lumens of sky and ground light in the cut chains, as if these ended in the mean luminance of the globe's open part."""
+    """Lumens of sky and ground light in the cut chains, as if these ended in the mean luminance of the open parcels."""
     transfer = result.transfer
     area = transfer.geometry.fracture.element_areas
     if not transfer.truncated.any() or not result.sky.any():

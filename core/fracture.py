@@ -73,16 +73,20 @@ def cut_pieces(pieces, counts, max_areas) -> Triangles:
     side = np.sqrt(2 * limits)
     for length in np.unique(counts[~closes]):
         rows = np.flatnonzero(~closes & (counts == length))
-        fan = np.stack([np.stack([v[rows, 0], v[rows, k], v[rows, k + 1]], axis=1) for k in range(1, length - 1)], axis=1)
+        fan = np.stack(
+            [np.stack([v[rows, 0], v[rows, k], v[rows, k + 1]], axis=1) for k in range(1, length - 1)], axis=1
+        )
         triangles.append(fan.reshape(-1, 3, 3))
         order.append(np.repeat(rows, length - 2))
     for row in np.flatnonzero(closes):
         a, b, d = v[row, 0], v[row, 1], v[row, 3]
         nu = max(1, math.ceil(np.linalg.norm(b - a) / side[row] - 1e-9))
         nv = max(1, math.ceil(np.linalg.norm(d - a) / side[row] - 1e-9))
-        while np.linalg.norm(np.cross(b - a, d - a)) / (nu * nv) > 2 * limits[row] * (1 + 1e-9):
+        while np.linalg.norm(polygons.cross(b - a, d - a)) / (nu * nv) > 2 * limits[row] * (1 + 1e-9):
             nu, nv = nu + 1, nv + 1
-        corner = a + (np.arange(nu + 1) / nu)[:, None, None] * (b - a) + (np.arange(nv + 1) / nv)[None, :, None] * (d - a)
+        corner = (
+            a + (np.arange(nu + 1) / nu)[:, None, None] * (b - a) + (np.arange(nv + 1) / nv)[None, :, None] * (d - a)
+        )
         p, q, r, s = corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]
         cells = np.stack([np.stack([p, q, r], axis=2), np.stack([p, r, s], axis=2)], axis=2)
         triangles.append(cells.reshape(-1, 3, 3))
@@ -120,7 +124,9 @@ def halve(triangles: Triangles, limits) -> Triangles:
         turn = (np.argmax(edges, axis=1)[:, None] + np.arange(3)) % 3
         a, b, c = np.moveaxis(np.take_along_axis(vertices, turn[:, :, None], axis=1), 1, 0)
         middle = 0.5 * (a + b)
-        vertices = np.stack([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)], axis=1).reshape(-1, 3, 3)
+        vertices = np.stack([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)], axis=1).reshape(
+            -1, 3, 3
+        )
         parent = np.repeat(parent, 2)
     vertices, parent = np.concatenate(done_vertices), np.concatenate(done_parent)
     order = np.argsort(parent, kind="stable")
@@ -197,7 +203,9 @@ def fracture(planes: Planes, cut, two_sided, max_area: float | None) -> Fracture
     faces = cut_pieces(planes.given, planes.given_counts, np.where(is_cut, limit if total else math.inf, math.inf))
     face_surface = surface[faces.parent]
     surface_area = np.bincount(surface, weights=piece_areas, minlength=len(planes.surfaces))
-    fine = np.where(np.asarray(cut), total / FEWEST_ELEMENTS if total else math.inf, surface_area / ELEMENTS_PER_PLAIN_SURFACE)
+    fine = np.where(
+        np.asarray(cut), total / FEWEST_ELEMENTS if total else math.inf, surface_area / ELEMENTS_PER_PLAIN_SURFACE
+    )
     parts = halve(Triangles(faces.vertices, np.arange(len(faces.parent))), fine[face_surface])
     sheet = planes.given_sheet[faces.parent]
     back_of = np.flatnonzero(np.asarray(two_sided)[face_surface])
@@ -292,7 +300,9 @@ def make_patches(planes: Planes, elements, element_sheet, element_active, areas,
             continue
         place = centroids[members] @ planes.sheet_axes[sheet % fronts].T
         # the outline's extent, not the centroids', so that cells are of even size
-        outline = planes.outlines[planes.outline_sheet == sheet % fronts].reshape(-1, 3) @ planes.sheet_axes[sheet % fronts].T
+        outline = (
+            planes.outlines[planes.outline_sheet == sheet % fronts].reshape(-1, 3) @ planes.sheet_axes[sheet % fronts].T
+        )
         low, extent = outline.min(axis=0), np.maximum(np.ptp(outline, axis=0), 1e-300)
         corners = (elements[members] @ planes.sheet_axes[sheet % fronts].T - low) / extent
         n = np.array([_cells_along(corners[:, :, k], extent[k] / math.sqrt(patch_area)) for k in (0, 1)])
@@ -306,7 +316,14 @@ def make_patches(planes: Planes, elements, element_sheet, element_active, areas,
         cells += int(n.prod())
         count += len(filled)
     if small:
-        count = _gather_small(planes, centroids, [(used[k], order[bounds[k] : bounds[k + 1]]) for k in small], patch_area, of_element, count)
+        count = _gather_small(
+            planes,
+            centroids,
+            [(used[k], order[bounds[k] : bounds[k + 1]]) for k in small],
+            patch_area,
+            of_element,
+            count,
+        )
         for k in small:
             sheet = used[k]
             base[sheet] = cells
@@ -334,7 +351,9 @@ def _gather_small(planes, centroids, groups, patch_area, of_element, count) -> i
     fronts = len(planes.sheet_surface)
     back = sheet_of >= fronts
     normal = planes.sheet_normal[sheet_of % fronts] * np.where(back, -1.0, 1.0)[:, None]
-    facing = np.argmax(np.abs(normal), axis=1) * 2 + (np.take_along_axis(normal, np.argmax(np.abs(normal), axis=1)[:, None], 1)[:, 0] > 0)
+    facing = np.argmax(np.abs(normal), axis=1) * 2 + (
+        np.take_along_axis(normal, np.argmax(np.abs(normal), axis=1)[:, None], 1)[:, 0] > 0
+    )
     key = np.c_[planes.sheet_surface[sheet_of % fronts], back, facing, np.floor(middle / math.sqrt(patch_area))]
     _, patch = np.unique(key, axis=0, return_inverse=True)
     patch = patch.reshape(-1)

@@ -1,8 +1,8 @@
 """The globe of parcels: directions shared by every receiver (Claro 1998; Claro & Pereira 2001, fig. 1).
 
 The sphere is cut from zenith to nadir into bands of equal height in polar angle, each band into parcels of
-equal width in azimuth. A band at mid polar angle θ holds ``1 + round(2.55 · bands · sin θ)`` parcels, so solid angles are
-nearly equal and 60 bands give the paper's 5,902 parcels.
+equal width in azimuth. A band at mid polar angle θ holds ``1 + round(2.55 · bands · sin θ)`` parcels, so solid
+angles are nearly equal and 60 bands give the paper's 5,902 parcels.
 """
 
 from __future__ import annotations
@@ -141,7 +141,8 @@ class Globe:
         azimuth = self.azimuth[parcels][:, None] + (step - 0.5) * self.azimuth_width[parcels][:, None]
         polar = np.arccos(np.clip(cosine, -1.0, 1.0))
         grid = direction_of(
-            np.repeat(polar, splits, axis=1).ravel(), np.broadcast_to(np.tile(azimuth, splits), (len(parcels), splits**2)).ravel()
+            np.repeat(polar, splits, axis=1).ravel(),
+            np.broadcast_to(np.tile(azimuth, splits), (len(parcels), splits**2)).ravel(),
         )
         return grid.reshape(len(parcels), splits**2, 3)
 

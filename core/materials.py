@@ -30,7 +30,8 @@ class Material:
         Luminous exitance that the surface emits by itself [lm/m²].
     refractive_index : float, optional
         Of a clear pane, above 1: reflection and transmission then follow Fresnel's equations and depend on the angle.
-        Absorption inside follows from ``regular_transmittance``; the mirror reflection follows and is not given besides.
+        Absorption inside follows from ``regular_transmittance``; the mirror reflection follows and is not given
+        besides.
 
     Raises
     ------
@@ -46,7 +47,13 @@ class Material:
     refractive_index: float | None = None
 
     def __post_init__(self):
-        for name in ("diffuse_reflectance", "specular_reflectance", "regular_transmittance", "diffuse_transmittance", "exitance"):
+        for name in (
+            "diffuse_reflectance",
+            "specular_reflectance",
+            "regular_transmittance",
+            "diffuse_transmittance",
+            "exitance",
+        ):
             value = _number(name, getattr(self, name))
             object.__setattr__(self, name, value)
             if value < 0:
@@ -54,11 +61,14 @@ class Material:
             if name != "exitance" and value > 1:
                 raise SceneError(f"Material: {name} is {value:g}; give a share between 0 and 1 (not percent)")
         if self.diffuse_transmittance > 0:
-            raise SceneError("Material: diffuse_transmittance (translucent materials) is not available yet; set it to 0")
+            raise SceneError(
+                "Material: diffuse_transmittance (translucent materials) is not available yet; set it to 0"
+            )
         total = self.diffuse_reflectance + self.specular_reflectance + self.regular_transmittance
         if total > 1 + _ROUNDING:
             raise SceneError(
-                f"Material: diffuse_reflectance + specular_reflectance + regular_transmittance = {total:g}; lower them to at most 1"
+                "Material: diffuse_reflectance + specular_reflectance + regular_transmittance "
+                f"= {total:g}; lower them to at most 1"
             )
         if self.refractive_index is not None:
             self._check_pane()
@@ -69,15 +79,19 @@ class Material:
         if index <= 1:
             raise SceneError(f"Material: refractive_index is {index:g}; it must be above 1 (window glass: 1.52)")
         if self.specular_reflectance > 0:
-            raise SceneError("Material: with refractive_index the mirror reflection follows; leave out specular_reflectance")
+            raise SceneError(
+                "Material: with refractive_index the mirror reflection follows; leave out specular_reflectance"
+            )
         if self.diffuse_reflectance > 0:
-            raise SceneError("Material: refractive_index is for clear panes; leave out diffuse_reflectance or refractive_index")
+            raise SceneError(
+                "Material: refractive_index is for clear panes; leave out diffuse_reflectance or refractive_index"
+            )
         r = normal_interface_reflectance(index)
         clearest = (1 - r) ** 2 / (1 - r**2)
         if self.regular_transmittance > clearest * (1 + 1e-9):
             raise SceneError(
-                f"Material: regular_transmittance {self.regular_transmittance:g} is more than the {clearest:.4f} that a pane of "
-                f"refractive index {index:g} can have; lower one of the two"
+                f"Material: regular_transmittance {self.regular_transmittance:g} is more than the {clearest:.4f} that a pane "
+                f"of refractive index {index:g} can have; lower one of the two"
             )
 
     @property
@@ -152,8 +166,8 @@ def inner_transmittance(transmittance: float, refractive_index: float) -> float:
 def pane_optics(cosine, refractive_index: float, inner: float) -> tuple[np.ndarray, np.ndarray]:
     """Reflectance and regular transmittance of a pane with two interfaces, for unpolarised light.
 
-    The whole series of inner reflections for each polarisation, then their mean (e.g. Born & Wolf, Principles of Optics,
-    1.6; Duffie & Beckman 2013, eq. 5.3.1).
+    The whole series of inner reflections for each polarisation, then their mean (e.g. Born & Wolf, Principles of
+    Optics, 1.6; Duffie & Beckman 2013, eq. 5.3.1).
 
     Parameters
     ----------

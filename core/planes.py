@@ -1,10 +1,12 @@
 """Planes: coplanar pieces of a surface joined into as few convex polygons as possible.
 
-What blocks the view is a plane's outline, not its mesh: a wall of a thousand coplanar quads is projected as one polygon.
+What blocks the view is a plane's outline, not its mesh: a wall of a thousand coplanar quads is projected as one
+polygon.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -124,14 +126,14 @@ def _sheet_axes(normals: np.ndarray, outlines: np.ndarray, outline_sheet: np.nda
     first[outline_sheet[order]] = edges[rows, longest][order]  # the longest of each sheet is written last
     first -= normals * np.einsum("sc,sc->s", first, normals)[:, None]
     first /= np.linalg.norm(first, axis=1, keepdims=True)
-    return np.stack([first, np.cross(normals, first)], axis=1)
+    return np.stack([first, polygons.cross(normals, first)], axis=1)
 
 
 def join_outline(loops: list[np.ndarray], normal: np.ndarray) -> list[np.ndarray]:
     """Convex polygons that cover the same area as edge-sharing coplanar loops.
 
-    Edges walked both ways cancel; what is left are the outlines. Where these do not close into simple loops without holes (doubled
-    faces, touching corners), the loops come back as they were.
+    Edges walked both ways cancel; what is left are the outlines. Where these do not close into simple loops without
+    holes (doubled faces, touching corners), the loops come back as they were.
 
     Parameters
     ----------
@@ -152,7 +154,7 @@ def join_outline(loops: list[np.ndarray], normal: np.ndarray) -> list[np.ndarray
     starts = np.cumsum([0] + [len(p) for p in loops])
     nxt: dict[int, int] = {}
     edges = set()
-    for a, b in zip(starts[:-1], starts[1:], strict=True):
+    for a, b in itertools.pairwise(starts):
         loop = ids[a:b]
         for one, two in zip(loop, np.roll(loop, -1), strict=True):
             if one == two or (one, two) in edges:

@@ -8,6 +8,16 @@ from __future__ import annotations
 import numpy as np
 
 
+def cross(a, b) -> np.ndarray:
+    """Cross products of vectors ``(..., 3)``, several times faster than NumPy's on small arrays."""
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    out = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    out[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    out[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return out
+
+
 def newell_normal(polygon) -> np.ndarray:
     """Vector along the right-hand normal of closed polygons, of twice their area (Newell's method).
 
@@ -21,7 +31,8 @@ def newell_normal(polygon) -> np.ndarray:
     """
     p = np.asarray(polygon, float)
     p = p - p[..., :1, :]
-    return np.cross(p, np.roll(p, -1, axis=-2)).sum(axis=-2)
+    following = np.concatenate([p[..., 1:, :], p[..., :1, :]], axis=-2)
+    return cross(p, following).sum(axis=-2)
 
 
 def areas(polygons) -> np.ndarray:
@@ -44,9 +55,9 @@ def plane_basis(normal) -> np.ndarray:
     """
     n = np.asarray(normal, float)
     helper = np.eye(3)[2] if abs(n[2]) < 0.9 else np.eye(3)[0]
-    first = np.cross(helper, n) if abs(n[2]) < 0.9 else helper - n * n[0]
+    first = cross(helper, n) if abs(n[2]) < 0.9 else helper - n * n[0]
     first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(n, first)])
+    return np.stack([first, cross(n, first)])
 
 
 def simplify(loop, tolerance: float) -> np.ndarray:
@@ -56,11 +67,11 @@ def simplify(loop, tolerance: float) -> np.ndarray:
     while changed and len(p) > 2:
         before, after = np.roll(p, 1, axis=0), np.roll(p, -1, axis=0)
         a, b = p - before, after - p
-        length_a, length_b = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
-        cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        length = np.linalg.norm(a, axis=1)
+        turn = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         chord = np.linalg.norm(after - before, axis=1)
-        straight = (np.abs(cross) <= tolerance * np.maximum(chord, tolerance)) & ((a * b).sum(axis=1) >= 0)
-        drop = (length_a <= tolerance) | straight
+        straight = (np.abs(turn) <= tolerance * np.maximum(chord, tolerance)) & ((a * b).sum(axis=1) >= 0)
+        drop = (length <= tolerance) | straight
         if not drop.any():
             changed = False
         else:  # never two neighbours in one pass: each judges the other's place
@@ -94,7 +105,12 @@ def crosses_itself(loop) -> bool:
             continue
         s1, s2 = side(a[i], b[i], c), side(a[i], b[i], d)
         s3, s4 = side(c, d, a[i][None]), side(c, d, b[i][None])
-        if np.any((np.minimum(s1, s2) < -scale) & (np.maximum(s1, s2) > scale) & (np.minimum(s3, s4) < -scale) & (np.maximum(s3, s4) > scale)):
+        if np.any(
+            (np.minimum(s1, s2) < -scale)
+            & (np.maximum(s1, s2) > scale)
+            & (np.minimum(s3, s4) < -scale)
+            & (np.maximum(s3, s4) > scale)
+        ):
             return True
     return False
 
@@ -104,10 +120,10 @@ def is_convex(loop, tolerance: float) -> bool:
     p = np.asarray(loop, float)
     a = np.roll(p, -1, axis=0) - p
     b = np.roll(a, -1, axis=0)
-    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    if np.any(cross < -tolerance * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1))):
+    bend = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    if np.any(bend < -tolerance * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1))):
         return False
-    turn = np.arctan2(cross, (a * b).sum(axis=1)).sum()
+    turn = np.arctan2(bend, (a * b).sum(axis=1)).sum()
     return turn < 2 * np.pi * 1.5
 
 
@@ -141,7 +157,9 @@ def triangulate(loop) -> np.ndarray:
             a, b, c = prev[k], here[k], nxt[k]
             if len(reflex):
                 inside = (
-                    (_cross(b - a, reflex - a) >= -tiny) & (_cross(c - b, reflex - b) >= -tiny) & (_cross(a - c, reflex - c) >= -tiny)
+                    (_cross(b - a, reflex - a) >= -tiny)
+                    & (_cross(c - b, reflex - b) >= -tiny)
+                    & (_cross(a - c, reflex - c) >= -tiny)
                 )
                 corner = ((reflex == a) | (reflex == c) | (reflex == b)).all(axis=1)
                 if np.any(inside & ~corner):
@@ -191,7 +209,9 @@ def convex_parts(loop, tolerance: float) -> list[np.ndarray]:
             if other == k:
                 continue
             one, two = parts[k], parts[other]
-            joined = [one[(i + 1 + s) % len(one)] for s in range(len(one))] + [two[(j + 2 + s) % len(two)] for s in range(len(two) - 2)]
+            joined = [one[(i + 1 + s) % len(one)] for s in range(len(one))] + [
+                two[(j + 2 + s) % len(two)] for s in range(len(two) - 2)
+            ]
             if is_convex(p[joined], tolerance):
                 parts = [q for m, q in enumerate(parts) if m not in (k, other)] + [joined]
                 merged = True
@@ -257,8 +277,8 @@ def clip(polygons, normal, offset=0.0) -> np.ndarray:
 def lambert_form_factor(polygons, normal) -> np.ndarray:
     """Form factor from a surface element at the origin to polygons wholly above its horizon.
 
-    Lambert's contour formula, F = 1/(2π) Σ β_e (n · γ_e) (Lambert 1760; e.g. Howell, C-1), positive for polygons that run
-    clockwise as the element sees them, that is whose right-hand normal looks at it.
+    Lambert's contour formula, F = 1/(2π) Σ β_e (n · γ_e) (Lambert 1760; e.g. Howell, C-1), positive for polygons
+    that run clockwise as the element sees them, that is whose right-hand normal looks at it.
 
     Parameters
     ----------
@@ -273,10 +293,10 @@ def lambert_form_factor(polygons, normal) -> np.ndarray:
     if not len(p):
         return np.zeros(0)
     q = np.roll(p, -1, axis=1)
-    cross = np.cross(p, q)
-    length = np.linalg.norm(cross, axis=2)
+    sides = cross(p, q)
+    length = np.linalg.norm(sides, axis=2)
     angle = np.arctan2(length, np.einsum("mvc,mvc->mv", p, q))
-    along = np.einsum("mvc,mc->mv", cross, np.broadcast_to(np.asarray(normal, float), (len(p), 3)))
+    along = np.einsum("mvc,mc->mv", sides, np.broadcast_to(np.asarray(normal, float), (len(p), 3)))
     ratio = np.divide(angle, length, out=np.zeros_like(angle), where=length > 0)
     return -(along * ratio).sum(axis=1) / (2 * np.pi)
 

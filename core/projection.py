@@ -31,7 +31,9 @@ class Beams:
     @classmethod
     def of(cls, hemisphere: Hemisphere) -> Beams:
         """All beams of a hemisphere."""
-        return cls(hemisphere.directions, hemisphere.axes, hemisphere.half_widths, np.arange(len(hemisphere.directions)))
+        return cls(
+            hemisphere.directions, hemisphere.axes, hemisphere.half_widths, np.arange(len(hemisphere.directions))
+        )
 
     def take(self, index) -> Beams:
         """Some of the beams."""
@@ -155,7 +157,7 @@ def edge_planes(points, obstacles: Obstacles, tolerance: float) -> tuple[np.ndar
     """
     p = np.asarray(points, float)
     relative = obstacles.vertices[None] - p[:, None, None]
-    planes = np.cross(relative, np.roll(relative, -1, axis=2))
+    planes = polygons.cross(relative, np.roll(relative, -1, axis=2))
     length = np.linalg.norm(planes, axis=3, keepdims=True)
     heights = obstacles.offsets[None] - p @ obstacles.normals.T
     heights[np.abs(heights) <= tolerance] = 0.0
@@ -168,8 +170,8 @@ def edge_planes(points, obstacles: Obstacles, tolerance: float) -> tuple[np.ndar
 def coverage(distance, width_a, width_b) -> tuple[np.ndarray, np.ndarray]:
     """Share of a rectangle on the positive side of a line, and where its centre lies.
 
-    The rectangle projects on the line's normal as the convolution of two boxes, so the share is a difference of squared ramps:
-    exact for a straight edge.
+    The rectangle projects on the line's normal as the convolution of two boxes, so the share is a difference of
+    squared ramps: exact for a straight edge.
 
     Parameters
     ----------

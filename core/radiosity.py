@@ -35,7 +35,9 @@ def by_cycles(factors, reflectance, initial, cycles: int, checkpoint: Callable[[
     return total
 
 
-def until_settled(factors, reflectance, initial, tolerance: float, checkpoint: Callable[[], None] = lambda: None) -> np.ndarray:
+def until_settled(
+    factors, reflectance, initial, tolerance: float, checkpoint: Callable[[], None] = lambda: None
+) -> np.ndarray:
     """Illuminance after all diffuse reflections: solves (I − K ρ) E = E_0.
 
     GMRES (Saad & Schultz 1986) on the patches: near-white rooms, which plain cycles need hundreds of sweeps for, take a
@@ -64,7 +66,8 @@ def until_settled(factors, reflectance, initial, tolerance: float, checkpoint: C
     gain = largest_gain(factors, reflectance)
     if gain >= _UNBOUNDED:
         raise SceneError(
-            "Light multiplies without end: a closed scene of diffuse reflectance 1 has no steady state; lower the reflectances below 1"
+            "Light multiplies without end: a closed scene of diffuse reflectance 1 has no steady state; "
+            "lower the reflectances below 1"
         )
     # an error e of the residual grows to at most e / (1 − gain) in the illuminance
     return _gmres(lambda e: e - factors @ (reflectance * e), initial, tolerance * (1 - gain), checkpoint)

@@ -1,4 +1,4 @@
-"""Single rays: the nearest outline along each, for scenes of many outlines and for what is left of deep specular chains."""
+"""Single rays: the nearest outline along each, for scenes of many outlines and the ends of deep specular chains."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+
+from . import polygons
 
 _FEW = 48
 _LEAF = 4
@@ -33,7 +35,7 @@ class RayScene:
     @cached_property
     def _edges(self) -> tuple[np.ndarray, np.ndarray]:
         edge = np.roll(self.vertices, -1, axis=1) - self.vertices
-        inward = np.cross(self.normals[:, None], edge)
+        inward = polygons.cross(self.normals[:, None], edge)
         length = np.linalg.norm(inward, axis=2, keepdims=True)
         inward = np.where(length > 0, inward / np.where(length > 0, length, 1.0), 0.0)
         start = np.einsum("owc,owc->ow", inward, self.vertices) - 1e-3 * self.tolerance
@@ -139,4 +141,3 @@ def _morton(points: np.ndarray) -> np.ndarray:
         for axis in range(3):
             code |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
     return code
-

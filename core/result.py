@@ -95,7 +95,9 @@ class Result:
         def side(parts: dict[str, np.ndarray], normals: np.ndarray) -> Side:
             illuminance = sum(parts.values())
             initial = sum(parts[name] for name in INITIAL)
-            return Side(illuminance, initial, emitted + reflectance * illuminance, parts, centroids, normals, cuts.face_areas)
+            return Side(
+                illuminance, initial, emitted + reflectance * illuminance, parts, centroids, normals, cuts.face_areas
+            )
 
         front = side({name: values[:faces] for name, values in means.items()}, cuts.face_normals)
         back = None
@@ -167,7 +169,9 @@ class Result:
         """
         surfaces = self.transfer.geometry.planes.surfaces
         if name not in surfaces:
-            raise SceneError(f"There is no surface '{name}' in this result; its surfaces are: {', '.join(surfaces[:20])}")
+            raise SceneError(
+                f"There is no surface '{name}' in this result; its surfaces are: {', '.join(surfaces[:20])}"
+            )
         return np.flatnonzero(self.transfer.geometry.fracture.face_surface == surfaces.index(name))
 
     def mean(self, name: str) -> float:
@@ -181,7 +185,8 @@ class Result:
         Parameters
         ----------
         points, normals : (m, 3) array of float
-            Normals of any length but zero; each point receives what lies above its plane. Surfaces through the point block nothing.
+            Normals of any length but zero; each point receives what lies above its plane. Surfaces through the point
+            block nothing.
         initial : bool
             Leave out light that has met a diffuse surface.
 
@@ -205,7 +210,10 @@ class Result:
         for rows in _coplanar(place, normal, geometry.outlines.tolerance):
             n = normal[rows[0]]
             sight = GroupSight(
-                geometry.outlines, geometry.targets.globe.hemisphere(n), HalfSpace(n, float(n @ place[rows[0]])).offset, transfer.limits
+                geometry.outlines,
+                geometry.targets.globe.hemisphere(n),
+                HalfSpace(n, float(n @ place[rows[0]])).offset,
+                transfer.limits,
             )
             for start in range(0, len(rows), 64):
                 some = rows[start : start + 64]

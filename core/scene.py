@@ -71,8 +71,8 @@ class Scene:
         name : str
             Unique in the scene.
         vertices : (n, 3) array of float
-            Corners of one planar polygon, convex or not, counter-clockwise as seen from its lit side; or, with ``faces``, the
-            vertices of a mesh [m].
+            Corners of one planar polygon, convex or not, counter-clockwise as seen from its lit side; or, with
+            ``faces``, the vertices of a mesh [m].
         material : Material
         faces : (f, 3) or (f, 4) array of int, or list of lists of int, optional
             Faces of a mesh by index into ``vertices``. Faces that are not flat are cut into triangles.
@@ -93,7 +93,9 @@ class Scene:
         if name in self.surfaces:
             raise SceneError(f"Surface '{name}' is in the scene already; give each surface a name of its own")
         if not isinstance(material, Material):
-            raise SceneError(f"Surface '{name}': material must be a luzespecular.Material, not {type(material).__name__}")
+            raise SceneError(
+                f"Surface '{name}': material must be a luzespecular.Material, not {type(material).__name__}"
+            )
         points = _vertices(name, vertices, faces is not None)
         if faces is None:
             pieces, counts, source, notes = _polygon_pieces(name, points)
@@ -114,10 +116,14 @@ def _vertices(name: str, vertices, mesh: bool) -> np.ndarray:
     if points.ndim != 2 or points.shape[1] != 3:
         raise SceneError(f"Surface '{name}': vertices must be an (n, 3) array, not of shape {points.shape}")
     if len(points) < 3:
-        raise SceneError(f"Surface '{name}' has {len(points)} vertices; a {'mesh' if mesh else 'polygon'} needs at least 3")
+        raise SceneError(
+            f"Surface '{name}' has {len(points)} vertices; a {'mesh' if mesh else 'polygon'} needs at least 3"
+        )
     bad = np.flatnonzero(~(np.abs(points) < _LARGEST_COORDINATE).all(axis=1))
     if len(bad):
-        raise SceneError(f"Surface '{name}': vertex {bad[0]} is {points[bad[0]].tolist()}; mend or remove it ({len(bad)} in all)")
+        raise SceneError(
+            f"Surface '{name}': vertex {bad[0]} is {points[bad[0]].tolist()}; mend or remove it ({len(bad)} in all)"
+        )
     return points
 
 
@@ -132,10 +138,13 @@ def _polygon_pieces(name: str, points: np.ndarray):
         basis = polygons.plane_basis(unit)
         loop = loop3 @ basis.T
         if polygons.crosses_itself(loop):
-            raise SceneError(f"Surface '{name}': the polygon's edges cross each other; split it or reorder its vertices")
+            raise SceneError(
+                f"Surface '{name}': the polygon's edges cross each other; split it or reorder its vertices"
+            )
         if off > PLANARITY * size:
             raise SceneError(
-                f"Surface '{name}' is not flat: a vertex lies {off:.3g} m off its plane; move it, or add the surface as a mesh of triangles"
+                f"Surface '{name}' is not flat: a vertex lies {off:.3g} m off its plane; "
+                "move it, or add the surface as a mesh of triangles"
             )
     if size == 0 or twice_area <= 1e-14 * size**2:
         raise SceneError(f"Surface '{name}' has no area: its vertices repeat or lie on one line; mend or remove it")
@@ -182,7 +191,7 @@ def _mesh_pieces(name: str, points: np.ndarray, faces):
         off = np.abs(np.einsum("fvc,fc->fv", corners - corners.mean(axis=1, keepdims=True), unit)).max(axis=1)
         flat = off <= PLANARITY * size
         edge = np.roll(corners, -1, axis=1) - corners
-        turn = np.einsum("fvc,fc->fv", np.cross(edge, np.roll(edge, -1, axis=1)), unit)
+        turn = np.einsum("fvc,fc->fv", polygons.cross(edge, np.roll(edge, -1, axis=1)), unit)
         convex = flat & (turn > -1e-9 * size[:, None] ** 2).all(axis=1) & (length < 5 or _turns_once(edge, unit))
         pieces.append(corners[convex])
         counts.append(np.full(int(convex.sum()), length))
@@ -207,7 +216,9 @@ def _mesh_pieces(name: str, points: np.ndarray, faces):
 
 def _turns_once(edge: np.ndarray, unit: np.ndarray) -> np.ndarray:
     nxt = np.roll(edge, -1, axis=1)
-    angle = np.arctan2(np.einsum("fvc,fc->fv", np.cross(edge, nxt), unit), np.einsum("fvc,fvc->fv", edge, nxt)).sum(axis=1)
+    angle = np.arctan2(
+        np.einsum("fvc,fc->fv", polygons.cross(edge, nxt), unit), np.einsum("fvc,fvc->fv", edge, nxt)
+    ).sum(axis=1)
     return angle < 3 * np.pi
 
 
@@ -230,5 +241,7 @@ def _faces_by_length(name: str, faces, vertex_count: int) -> dict[int, tuple[np.
             raise SceneError(f"Surface '{name}': faces must hold whole numbers, not {index.dtype}")
         bad = np.flatnonzero(((index < 0) | (index >= vertex_count)).any(axis=1))
         if len(bad):
-            raise SceneError(f"Surface '{name}': face {rows[bad[0]]} names a vertex outside 0 … {vertex_count - 1}; mend the face")
+            raise SceneError(
+                f"Surface '{name}': face {rows[bad[0]]} names a vertex outside 0 … {vertex_count - 1}; mend the face"
+            )
     return groups

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,12 +46,16 @@ class Field:
     emitters: int
 
 
-def solve_light(transfer: Transfer, light: Daylight, *, tolerance: float, cycles: int | None, progress: Progress | None) -> Result:
+def solve_light(
+    transfer: Transfer, light: Daylight, *, tolerance: float, cycles: int | None, progress: Progress | None
+) -> Result:
     """See `Transfer.solve`."""
     _check_options(light, tolerance, cycles)
     geometry, recorder = transfer.geometry, Recorder(progress)
     count = len(geometry.element_points)
-    components = {name: np.zeros(count) for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted")}
+    components = {
+        name: np.zeros(count) for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted")
+    }
 
     sky = sky_column(geometry, light)
     if sky.any():
@@ -63,7 +68,14 @@ def solve_light(transfer: Transfer, light: Daylight, *, tolerance: float, cycles
     sunlight = NO_SUNLIGHT
     sun = light.sun
     if sun is None or not sun.is_up or sun.normal_illuminance == 0:
-        recorder.skip("sun", "no Sun" if sun is None else "the Sun is at or below the horizon" if not sun.is_up else "the Sun gives no light")
+        recorder.skip(
+            "sun",
+            "no Sun"
+            if sun is None
+            else "the Sun is at or below the horizon"
+            if not sun.is_up
+            else "the Sun gives no light",
+        )
     else:
         with recorder.stage("sun", 0.05):
             sunlight = trace_sun(
@@ -150,7 +162,8 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
 def _cycles_after_first(factors, reflectance, smooth, first, cycles: int, checkpoint) -> np.ndarray:
     """Patch illuminance whose reflection, one last cycle, makes exactly n cycles of both kinds of light.
 
-    Smooth light needs n − 1 cycles on the patches before its last; light whose first reflection is found already, n − 2.
+    Smooth light needs n − 1 cycles on the patches before its last; light whose first reflection is found already, n
+    − 2.
     """
     total = radiosity.by_cycles(factors, reflectance, smooth, cycles - 1, checkpoint)
     if cycles >= 2:
@@ -182,12 +195,14 @@ def _gather_elements(transfer: Transfer, sources: list[Source], recorder: Record
     order = np.argsort(sheet, kind="stable")
     bounds = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0, [True])))
     tasks = []
-    for a, b in zip(bounds[:-1], bounds[1:], strict=True):
+    for a, b in itertools.pairwise(bounds):
         tasks += [order[k : min(k + 512, b)] for k in range(a, b, 512)]
 
     def work(members, checkpoint):
         normal = geometry.element_normals[members[0]]
-        out[members] = gather_sources(geometry.outlines, sources, geometry.element_points[members], normal, transfer.limits.cutoff, checkpoint)
+        out[members] = gather_sources(
+            geometry.outlines, sources, geometry.element_points[members], normal, transfer.limits.cutoff, checkpoint
+        )
 
     run_parallel(work, tasks, transfer.threads, lambda done: recorder.report(0.1 + 0.6 * done, "interreflection"))
     return out
@@ -204,7 +219,9 @@ def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:
 
 def _check_options(light, tolerance, cycles) -> None:
     if not isinstance(light, Daylight):
-        raise SceneError(f"solve needs a luzespecular.Daylight, not {type(light).__name__}; e.g. Daylight(sky=UniformSky(1000))")
+        raise SceneError(
+            f"solve needs a luzespecular.Daylight, not {type(light).__name__}; e.g. Daylight(sky=UniformSky(1000))"
+        )
     if light.sun is not None and light.sun.disc:
         raise SceneError("Sun(disc=True), penumbras, is not available yet; leave out disc")
     try:

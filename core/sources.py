@@ -1,7 +1,8 @@
 """Bright few: luminous surfaces and sun patches as polygons, gathered exactly by Lambert's formula.
 
-A small bright polygon is seen by few parcels or none. So its light is found without the globe: what a receiver sees of the polygon is
-the polygon less the outlines in between, clipped exactly; in mirrors it is the same in the mirrored scene, inside the mirror's outline.
+A small bright polygon is seen by few parcels or none. So its light is found without the globe: what a receiver sees
+of the polygon is the polygon less the outlines in between, clipped exactly; in mirrors it is the same in the
+mirrored scene, inside the mirror's outline.
 """
 
 from __future__ import annotations
@@ -61,7 +62,12 @@ class Screen:
 
 
 def gather_sources(
-    outlines: Outlines, sources: list[Source], points, normal, cutoff: float, checkpoint: Callable[[], None] = lambda: None
+    outlines: Outlines,
+    sources: list[Source],
+    points,
+    normal,
+    cutoff: float,
+    checkpoint: Callable[[], None] = lambda: None,
 ) -> np.ndarray:
     """Illuminance from sources at receivers of one plane, direct, through panes and in mirrors.
 
@@ -102,20 +108,29 @@ def _gather(outlines, source, points, horizon, screens, throughput, beyond, mirr
     rows = np.flatnonzero(points @ plane - at > outlines.tolerance)
     if len(rows) and polygons.areas(visible)[0] > outlines.tolerance**2:
         limits = [HalfSpace(plane, at), horizon] + ([beyond] if beyond is not None else [])
-        blockers = [
-            Screen(polygon, o, False)
-            for o, polygon in _between(outlines, points[rows], visible[0], limits)
-        ]
-        total[rows] += source.exitance * _seen_factor(outlines, visible[0], points[rows], horizon.normal, [*screens, *blockers])
+        blockers = [Screen(polygon, o, False) for o, polygon in _between(outlines, points[rows], visible[0], limits)]
+        total[rows] += source.exitance * _seen_factor(
+            outlines, visible[0], points[rows], horizon.normal, [*screens, *blockers]
+        )
     if depth >= DEEPEST_CHAIN:
         return
     for o in mirrors:
-        _gather_mirrored(outlines, source, points, horizon, screens, throughput, beyond, mirrors, cutoff, depth, total, o)
+        _gather_mirrored(
+            outlines, source, points, horizon, screens, throughput, beyond, mirrors, cutoff, depth, total, o
+        )
 
 
-def _gather_mirrored(outlines, source, points, horizon, screens, throughput, beyond, mirrors, cutoff, depth, total, o) -> None:
+def _gather_mirrored(
+    outlines, source, points, horizon, screens, throughput, beyond, mirrors, cutoff, depth, total, o
+) -> None:
     material, two_sided = outlines.materials[o], outlines.two_sided[o]
-    product = throughput * float(np.max(material.specular_at(np.linspace(0.05, 1, 8)) if material.refractive_index else material.specular_reflectance))
+    product = throughput * float(
+        np.max(
+            material.specular_at(np.linspace(0.05, 1, 8))
+            if material.refractive_index
+            else material.specular_reflectance
+        )
+    )
     if product < cutoff:
         return
     normal, offset = outlines.normals[o], float(outlines.offsets[o])
@@ -130,8 +145,11 @@ def _gather_mirrored(outlines, source, points, horizon, screens, throughput, bey
             aperture = polygons.clip(aperture, beyond.normal, beyond.offset)
         if polygons.areas(aperture)[0] <= outlines.tolerance**2:
             continue
-        if screens and not _seen_factor(outlines, aperture[0], points[rows], horizon.normal, [s for s in screens if s.aperture], any_side=True).any():
-            continue
+        if screens:
+            mouths = [s for s in screens if s.aperture]
+            rows = rows[_seen_factor(outlines, aperture[0], points[rows], horizon.normal, mouths, any_side=True) > 0]
+            if not len(rows):
+                continue
         limits = [ahead, horizon] + ([beyond] if beyond is not None else [])
         before = [Screen(p, b, False) for b, p in _between(outlines, points[rows], aperture[0], limits, skip=o)]
         passed = [s.reflected(normal, offset) for s in [*screens, *before]]
@@ -183,14 +201,16 @@ def _between(outlines: Outlines, points, target, half_spaces: list[HalfSpace], s
             yield int(o), part[0]
 
 
-def _seen_factor(outlines: Outlines, target, points, normal, screens: list[Screen], any_side: bool = False) -> np.ndarray:
-    """(r,) float: form factor to what is seen of a polygon, times the transmittances and reflectances of the screens."""
+def _seen_factor(
+    outlines: Outlines, target, points, normal, screens: list[Screen], any_side: bool = False
+) -> np.ndarray:
+    """(r,) float: form factor to what is seen of a polygon, times what the screens let through or reflect."""
     row = np.arange(len(points))
     shape = target[None] - points[:, None]
     weight = np.ones(len(points))
     for screen in screens:
         relative = screen.polygon[None] - points[:, None]
-        planes = np.cross(relative, np.roll(relative, -1, axis=1))
+        planes = polygons.cross(relative, np.roll(relative, -1, axis=1))
         facing = np.einsum("rc,rc->r", polygons.newell_normal(relative), relative[:, 0])
         planes *= np.sign(facing)[:, None, None]
         length = np.linalg.norm(planes, axis=2)
@@ -232,7 +252,9 @@ def _pass_screen(outlines, screen, row, shape, weight, planes, edges, overlaps):
         share = material.specular_at(cosine) if screen.aperture else material.transmittance_at(cosine)
         kept.append((row, shape, weight * share))
     width = max([s.shape[1] for _, s, _ in kept if len(s)], default=1)
-    padded = [np.concatenate([s, np.repeat(s[:, -1:], width - s.shape[1], axis=1)], axis=1) for _, s, _ in kept if len(s)]
+    padded = [
+        np.concatenate([s, np.repeat(s[:, -1:], width - s.shape[1], axis=1)], axis=1) for _, s, _ in kept if len(s)
+    ]
     if not padded:
         return row[:0], np.zeros((0, 1, 3)), weight[:0]
     return (

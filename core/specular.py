@@ -1,8 +1,8 @@
 """Specular chains: what receivers see straight ahead, through clear panes and in mirrors, to any order.
 
 Seen from the receivers of one plane a planar mirror is a window into the mirrored scene. So the receivers are
-mirrored once, and the reflected directions are again shared by all of them; nothing of position or direction is rounded. Chains
-go on until the product of reflectances falls below a cut-off; what is cut is booked, not forgotten.
+mirrored once, and the reflected directions are again shared by all of them; nothing of position or direction is
+rounded. Chains go on until the product of reflectances falls below a cut-off; what is cut is booked, not forgotten.
 """
 
 from __future__ import annotations
@@ -83,7 +83,8 @@ class Sighting:
     obstacles : Obstacles
     view : View
     weights : (r, k) float
-        Cosine weight of each beam times the reflectances and transmittances on the way here; 0 where the beam did not come.
+        Cosine weight of each beam times the reflectances and transmittances on the way here; 0 where the beam did
+        not come.
     mirrored : bool
         Whether at least one mirror was on the way.
     rays : bool
@@ -161,7 +162,9 @@ class _Rays:
         )
 
     @classmethod
-    def beyond(cls, rows, points, directions, weights, throughput: float, mirrored: bool, past: HalfSpace, depth: int) -> _Rays:
+    def beyond(
+        cls, rows, points, directions, weights, throughput: float, mirrored: bool, past: HalfSpace, depth: int
+    ) -> _Rays:
         """Rays of mirrored receivers, set forward to the mirror's plane."""
         rays = cls.of(rows, points, directions, weights, throughput, mirrored, depth)
         ahead = (past.offset - rays.points @ past.normal) / (rays.directions @ past.normal)
@@ -172,7 +175,15 @@ class _Rays:
         """All rays in one."""
         if not parts:
             none = np.zeros(0)
-            return cls(none.astype(np.int64), np.zeros((0, 3)), np.zeros((0, 3)), none, none, none.astype(bool), none.astype(np.int64))
+            return cls(
+                none.astype(np.int64),
+                np.zeros((0, 3)),
+                np.zeros((0, 3)),
+                none,
+                none,
+                none.astype(bool),
+                none.astype(np.int64),
+            )
         return cls(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)))
 
     def take(self, index) -> _Rays:
@@ -208,7 +219,18 @@ def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrored: bool) -> S
         heights=_Heights(outlines, rays.points),
     )
     beams = Beams(np.zeros((0, 3)), np.zeros((0, 2, 3)), none, np.zeros(0, np.int64))
-    return Sighting(rays.rows, rays.points, np.zeros(3), beams, outlines.whole, view, rays.weights[:, None], mirrored, outlines, rays=True)
+    return Sighting(
+        rays.rows,
+        rays.points,
+        np.zeros(3),
+        beams,
+        outlines.whole,
+        view,
+        rays.weights[:, None],
+        mirrored,
+        outlines,
+        rays=True,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,7 +327,9 @@ class GroupSight:
                 for front in (True, False):
                     side = np.flatnonzero((cosine < 0) == front)
                     for kind, share in self._ways(material, o, front, cosine[side]):
-                        onward.append(here_rays.take(side).onward(here_place[side], share, self.outlines.normals[o], kind))
+                        onward.append(
+                            here_rays.take(side).onward(here_place[side], share, self.outlines.normals[o], kind)
+                        )
             rays = _Rays.joined(onward)
             kept = (rays.throughput >= self.limits.cutoff) & (rays.depth < DEEPEST_CHAIN)
             np.add.at(truncated, rays.rows[~kept], rays.weights[~kept])
@@ -358,11 +382,30 @@ class GroupSight:
                     if chain and lit < _FEW_BEAMS:
                         start = points if kind == "mirror" else s.points[rows]
                         left.append(
-                            _Rays.beyond(s.rows[rows], start, beams.directions, onward, product, s.mirrored or kind == "mirror", past, len(chain) + 1)
+                            _Rays.beyond(
+                                s.rows[rows],
+                                start,
+                                beams.directions,
+                                onward,
+                                product,
+                                s.mirrored or kind == "mirror",
+                                past,
+                                len(chain) + 1,
+                            )
                         )
                         continue
                     following.append(
-                        (s.rows[rows], points, ahead, (past,), beams, onward, product, s.mirrored or kind == "mirror", (*chain, step))
+                        (
+                            s.rows[rows],
+                            points,
+                            ahead,
+                            (past,),
+                            beams,
+                            onward,
+                            product,
+                            s.mirrored or kind == "mirror",
+                            (*chain, step),
+                        )
                     )
         return following
 
@@ -380,4 +423,3 @@ class GroupSight:
             yield "mirror", material.specular_at(cosine)
         if material.is_transparent:
             yield "through", material.transmittance_at(cosine)
-

@@ -1,7 +1,7 @@
 """Sunlight as exact polygons: where the beam lands, straight, through panes and off mirrors (virtual Suns).
 
-The Sun's beam is collimated, so its shadow on a plane is a polygon. What each outline receives is its own polygon less the prisms of
-all outlines nearer to the Sun; a lit piece of a mirror is the mouth of a further, reflected beam.
+The Sun's beam is collimated, so its shadow on a plane is a polygon. What each outline receives is its own polygon
+less the prisms of all outlines nearer to the Sun; a lit piece of a mirror is the mouth of a further, reflected beam.
 """
 
 from __future__ import annotations
@@ -84,7 +84,9 @@ class Sunlight:
 NO_SUNLIGHT = Sunlight([], [], 0.0)
 
 
-def trace_sun(outlines: Outlines, direction, normal_illuminance: float, cutoff: float, checkpoint: Callable[[], None]) -> Sunlight:
+def trace_sun(
+    outlines: Outlines, direction, normal_illuminance: float, cutoff: float, checkpoint: Callable[[], None]
+) -> Sunlight:
     """Follow the Sun's beam through the scene.
 
     Parameters
@@ -164,10 +166,14 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
         upstream = -normal * np.sign(cosine[k])
         height = vertices @ upstream - plane * -np.sign(cosine[k])
         spread = np.einsum("owc,vc->owv", walls, region.reshape(-1, 3)) - wall_offsets[:, :, None]
-        meets = (height > tolerance).any(axis=1) & (np.abs(cosine) > 1e-12) & (spread.max(axis=2) > tolerance).all(axis=1)
+        meets = (
+            (height > tolerance).any(axis=1) & (np.abs(cosine) > 1e-12) & (spread.max(axis=2) > tolerance).all(axis=1)
+        )
         meets[k] = False
         for b in np.flatnonzero(meets):
-            pieces = _shadow(outlines, pieces, vertices[b], int(present[b]), upstream, -plane * np.sign(cosine[k]), beam, cosine[b])
+            pieces = _shadow(
+                outlines, pieces, vertices[b], int(present[b]), upstream, -plane * np.sign(cosine[k]), beam, cosine[b]
+            )
             if not pieces:
                 break
         for polygon, factor in ((p, f) for batch, factors in pieces for p, f in zip(batch, factors, strict=True)):
@@ -220,7 +226,7 @@ def prism(polygon, travel, cosine) -> tuple[np.ndarray, np.ndarray]:
     offsets : (o, w) float
     """
     edge = np.roll(polygon, -1, axis=1) - polygon
-    normals = np.cross(travel, edge) * np.sign(cosine)[:, None, None]
+    normals = polygons.cross(travel, edge) * np.sign(cosine)[:, None, None]
     length = np.linalg.norm(normals, axis=2, keepdims=True)
     normals = np.where(length > 0, normals / np.where(length > 0, length, 1.0), 0.0)
     offsets = np.einsum("owc,owc->ow", normals, polygon)
@@ -234,7 +240,9 @@ def _mouth_prism(beam: Beam) -> tuple[np.ndarray, np.ndarray]:
     return normals[0][bounding], offsets[0][bounding]
 
 
-def light_elements(patches: list[SunPatch], elements, element_sheet, outline_sheet, sheets: int, specular: bool) -> np.ndarray:
+def light_elements(
+    patches: list[SunPatch], elements, element_sheet, outline_sheet, sheets: int, specular: bool
+) -> np.ndarray:
     """Mean illuminance on elements from sun patches: exactly the lit share of each.
 
     Parameters
@@ -269,7 +277,7 @@ def lit_share(triangles, polygon) -> np.ndarray:
     """(n,) float: share of each triangle's area inside a coplanar convex polygon ``(v, 3)``."""
     normal = polygons.newell_normal(polygon)
     edge = np.roll(polygon, -1, axis=0) - polygon
-    inward = np.cross(normal, edge)
+    inward = polygons.cross(normal, edge)
     length = np.linalg.norm(inward, axis=1)
     inward, start = inward[length > 0] / length[length > 0, None], polygon[length > 0]
     distance = np.einsum("ntc,ec->nte", triangles, inward) - np.einsum("ec,ec->e", inward, start)

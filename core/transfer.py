@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import threading
@@ -24,7 +25,7 @@ PATCHES = 2_000
 """Patches that exitance is resolved in."""
 
 _CHUNK_CELLS = 80_000
-"""Receivers times beams that are looked at together: they stay in cache, and matrix products too small for BLAS to split."""
+"""Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,8 +137,8 @@ def prepare(
     bands : int
         Bands of the globe; 60 gives 5,902 parcels.
     max_area : float, optional
-        Largest area of a face [m²]. None = chosen for the scene, some 10,000 faces; inf = faces as given, only triangulated. Purely
-        specular and black surfaces are not cut for their size.
+        Largest area of a face [m²]. None = chosen for the scene, some 10,000 faces; inf = faces as given, only
+        triangulated. Purely specular and black surfaces are not cut for their size.
     specular_cutoff : float
         Specular chains are followed down to this product of reflectances.
     threads : int, optional
@@ -176,7 +177,9 @@ def prepare(
         geometry=geometry,
         form_factors=gathered.form_factors,
         sky_direct=gathered.sky_direct,
-        sky_specular=gathered.sky_specular[specular_rows] if len(specular_rows) else np.zeros((0, geometry.targets.columns), np.float32),
+        sky_specular=gathered.sky_specular[specular_rows]
+        if len(specular_rows)
+        else np.zeros((0, geometry.targets.columns), np.float32),
         specular_rows=specular_rows,
         patch_factors=patch_factors,
         unlit=gathered.unlit,
@@ -196,7 +199,9 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
     points = cuts.elements.mean(axis=1)
     fronts = len(planes.sheet_surface)
     surface = planes.sheet_surface[cuts.element_sheet % fronts]
-    normals = planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
+    normals = (
+        planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
+    )
     patches = make_patches(planes, cuts.elements, cuts.element_sheet, diffuse[surface], cuts.element_areas, PATCHES)
     outline_surface = planes.sheet_surface[planes.outline_sheet]
     outline_normals = planes.sheet_normal[planes.outline_sheet]
@@ -208,7 +213,9 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
         two_sided=two_sided[outline_surface],
         tolerance=max(1e-9 * planes.size, 8 * np.finfo(float).eps * float(np.abs(planes.centre).max())),
     )
-    return Geometry(planes, cuts, Targets.of(planes, patches, globe), outlines, [s.material for s in surfaces], normals, points)
+    return Geometry(
+        planes, cuts, Targets.of(planes, patches, globe), outlines, [s.material for s in surfaces], normals, points
+    )
 
 
 def chunks_of_receivers(geometry: Geometry, beams: int) -> list[np.ndarray]:
@@ -219,7 +226,7 @@ def chunks_of_receivers(geometry: Geometry, beams: int) -> list[np.ndarray]:
     order = np.argsort(sheet, kind="stable")
     bounds = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0, [True])))
     chunks = []
-    for a, b in zip(bounds[:-1], bounds[1:], strict=True):
+    for a, b in itertools.pairwise(bounds):
         members = order[a:b]
         if len(members) > size:
             place = geometry.element_points[members] @ geometry.planes.sheet_axes[sheet[members[0]] % fronts].T
@@ -371,7 +378,6 @@ def _check_memory(geometry: Geometry, memory: float | None) -> None:
     needed = 4.0 * elements * (patches + specular * columns) + 8.0 * patches**2
     if memory is not None and needed > memory:
         raise SceneError(
-            f"The scene needs {needed / 1e9:.2f} GB for {elements} receivers, more than the {memory / 1e9:.2f} GB of 'memory'; "
-            "raise max_area, lower bands, or allow more memory"
+            f"The scene needs {needed / 1e9:.2f} GB for {elements} receivers, more than the {memory / 1e9:.2f} GB "
+            "of 'memory'; raise max_area, lower bands, or allow more memory"
         )
-

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import polygons
 from .projection import Beams, HalfSpace, Obstacles, coverage, edge_planes
 
 OPEN = -1
@@ -162,7 +163,7 @@ def _columns_within(hull, outline, bounded, heights, directions, reach):
         return every, np.zeros(len(every), bool)
     sign = np.sign(heights[0])
     relative = outline[None] - hull[:, None]
-    planes = (np.cross(relative, np.roll(relative, -1, axis=1)) * sign)[:, bounded]
+    planes = (polygons.cross(relative, np.roll(relative, -1, axis=1)) * sign)[:, bounded]
     if not planes.shape[1]:
         return every, np.zeros(len(every), bool)
     length = np.linalg.norm(planes, axis=2).max(axis=0)
@@ -225,7 +226,16 @@ def _settle_parts(seen, nearest, possible, candidates, planes, heights, slopes, 
     if len(complex_):
         chosen = np.flatnonzero(~simple[group])
         share[chosen], offset[chosen], rest, rest_offset = _sample_parts(
-            row[chosen], beam[chosen], obstacle[chosen], sine[order[chosen]], group[chosen], seen, planes, heights, obstacles.normals, beams
+            row[chosen],
+            beam[chosen],
+            obstacle[chosen],
+            sine[order[chosen]],
+            group[chosen],
+            seen,
+            planes,
+            heights,
+            obstacles.normals,
+            beams,
         )
     left = np.where(simple, 1.0 - group_share, 0.0)
     background_offset = -np.add.reduceat(share[:, None] * offset, starts, axis=0) / np.maximum(left, 1e-12)[:, None]
@@ -269,7 +279,10 @@ def _sample_parts(row, beam, obstacle, sine, group, seen, planes, heights, norma
 
     def distances(rows, beams_, obstacles_, across):
         normal = normals[obstacles_]
-        slope = np.einsum("nc,nc->n", beams.directions[beams_], normal)[:, None] + np.einsum("nac,nc->na", across, normal) @ grid
+        slope = (
+            np.einsum("nc,nc->n", beams.directions[beams_], normal)[:, None]
+            + np.einsum("nac,nc->na", across, normal) @ grid
+        )
         with np.errstate(divide="ignore", invalid="ignore"):
             along = heights[rows, obstacles_][:, None] / slope
         return np.where(along > 0, along, np.inf)
