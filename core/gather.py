@@ -90,15 +90,13 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
     for s in sightings:
         parts = s.part_weights()
         _add_patches(s, parts, targets, patches, unlit)
-        if s.rays:
-            if s.mirrored and specular is None:
-                specular = np.zeros_like(direct)
-            _splat(s, parts, targets, specular if s.mirrored else direct)
-        elif s.mirrored:
+        if s.mirrored:
             specular = np.zeros_like(direct) if specular is None else specular
-            _add_mirrored_sky(s, parts, targets, specular)
+            _add_mirrored_sky(s, targets, specular)
+            _splat(s, parts, targets, specular)
         else:
-            _add_sky(s, parts, targets, sight.hemisphere, direct)
+            _add_sky(s, targets, sight.hemisphere, direct)
+            _splat(s, parts, targets, direct)
     as_float32 = np.float32
     return Gathered(
         patches.astype(as_float32),
@@ -190,16 +188,19 @@ def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.
     return row, grid.grid[base + cell[:, 0] * shape[:, 1] + cell[:, 1]], weight
 
 
-def _add_sky(s: Sighting, parts: np.ndarray, targets: Targets, hemisphere: Hemisphere, out: np.ndarray) -> None:
+def _add_sky(s: Sighting, targets: Targets, hemisphere: Hemisphere, out: np.ndarray) -> None:
+    if s.rays:
+        return
     parcels = hemisphere.parcels[s.beams.columns]
     free = np.where(s.view.seen == OPEN, s.weights, 0.0)
     above = parcels < targets.sky_parcels
     out[np.ix_(s.rows, parcels[above])] += free[:, above]
     out[s.rows, -1] += free[:, ~above].sum(axis=1)
-    _splat(s, parts, targets, out)
 
 
-def _add_mirrored_sky(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) -> None:
+def _add_mirrored_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
+    if s.rays:
+        return
     free = np.flatnonzero((s.view.seen == OPEN) & (s.weights > 0))
     row, beam = np.divmod(free, s.weights.shape[1])
     weight = s.weights[row, beam]
@@ -207,7 +208,6 @@ def _add_mirrored_sky(s: Sighting, parts: np.ndarray, targets: Targets, out: np.
     for k in range(4):
         flat = s.rows[row] * targets.columns + parcels[beam, k]
         out += np.bincount(flat, weights=weight * shares[beam, k], minlength=out.size).reshape(out.shape)
-    _splat(s, parts, targets, out)
 
 
 def _splat(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) -> None:

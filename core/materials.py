@@ -90,8 +90,8 @@ class Material:
         clearest = (1 - r) ** 2 / (1 - r**2)
         if self.regular_transmittance > clearest * (1 + 1e-9):
             raise SceneError(
-                f"Material: regular_transmittance {self.regular_transmittance:g} is more than the {clearest:.4f} that a pane "
-                f"of refractive index {index:g} can have; lower one of the two"
+                f"Material: regular_transmittance {self.regular_transmittance:g} is more than the {clearest:.4f} that "
+                f"a pane of refractive index {index:g} can have; lower one of the two"
             )
 
     @property
@@ -143,7 +143,7 @@ class Material:
 
     @property
     def _inner(self) -> float:
-        return inner_transmittance(self.regular_transmittance, self.refractive_index)
+        return inner_transmittance(self.regular_transmittance, float(self.refractive_index or 1.0))
 
 
 def normal_interface_reflectance(refractive_index: float) -> float:

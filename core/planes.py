@@ -37,7 +37,7 @@ class Planes:
     sheet_normal : (s, 3) float
     sheet_axes : (s, 2, 3) float
         In-plane axes, along the sheet's longest edge.
-    outlines, outline_counts, outline_sheet : (o, w, 3) float, (o,) int, (o,) int
+    outlines, outline_sheet : (o, w, 3) float, padded, and (o,) int
         Convex polygons that block the view.
     """
 
@@ -52,7 +52,6 @@ class Planes:
     sheet_normal: np.ndarray
     sheet_axes: np.ndarray
     outlines: np.ndarray
-    outline_counts: np.ndarray
     outline_sheet: np.ndarray
 
 
@@ -73,7 +72,10 @@ def find_planes(scene: Scene) -> Planes:
     high = np.max([s.pieces.reshape(-1, 3).max(axis=0) for s in surfaces], axis=0)
     centre, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
     given, counts, sheets, sources = [], [], [], []
-    sheet_surface, sheet_normal, outlines, outline_sheet = [], [], [], []
+    sheet_surface: list[int] = []
+    sheet_normal: list[np.ndarray] = []
+    outlines: list[np.ndarray] = []
+    outline_of: list[int] = []
     for number, surface in enumerate(surfaces):
         pieces = surface.pieces - centre
         normal = polygons.newell_normal(pieces)
@@ -93,12 +95,12 @@ def find_planes(scene: Scene) -> Planes:
             loops = [pieces[m, : surface.counts[m]] for m in mine]
             joined = join_outline(loops, normal[representative]) if 1 < len(mine) <= _JOIN_AT_MOST else loops
             outlines += joined
-            outline_sheet += [len(sheet_surface)] * len(joined)
+            outline_of += [len(sheet_surface)] * len(joined)
             sheet_surface.append(number)
             sheet_normal.append(normal[representative])
     padded, given_counts = polygons.pad([p[:c] for p, c in given])
-    blocked, outline_counts = polygons.pad(outlines)
-    outline_sheet = np.array(outline_sheet)
+    blocked, _ = polygons.pad(outlines)
+    outline_sheet = np.array(outline_of)
     return Planes(
         centre=centre,
         size=size,
@@ -111,7 +113,6 @@ def find_planes(scene: Scene) -> Planes:
         sheet_normal=np.array(sheet_normal),
         sheet_axes=_sheet_axes(np.array(sheet_normal), blocked, outline_sheet),
         outlines=blocked,
-        outline_counts=outline_counts,
         outline_sheet=outline_sheet,
     )
 

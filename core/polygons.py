@@ -172,7 +172,7 @@ def triangulate(loop) -> np.ndarray:
         m = len(rest)
         triangles.append((rest[best - 1], rest[best], rest[(best + 1) % m]))
         del rest[best]
-    triangles.append(tuple(rest))
+    triangles.append((rest[0], rest[1], rest[2]))
     t = np.array(triangles)
     area = _cross(p[t[:, 1]] - p[t[:, 0]], p[t[:, 2]] - p[t[:, 0]])
     return t[area > tiny]

@@ -82,7 +82,7 @@ class Result:
         cuts, planes = transfer.geometry.fracture, transfer.geometry.planes
         faces = len(cuts.faces)
         means = {name: cuts.side_means(values) for name, values in field.components.items()}
-        total = sum(means.values())
+        total = np.sum(list(means.values()), axis=0)
         if not np.isfinite(total).all():
             worst = int(np.flatnonzero(~np.isfinite(total))[0])
             surface = planes.surfaces[cuts.face_surface[worst if worst < faces else cuts.back_of[worst - faces]]]
@@ -93,8 +93,8 @@ class Result:
         centroids = cuts.faces.mean(axis=1) + planes.centre
 
         def side(parts: dict[str, np.ndarray], normals: np.ndarray) -> Side:
-            illuminance = sum(parts.values())
-            initial = sum(parts[name] for name in INITIAL)
+            illuminance = np.sum(list(parts.values()), axis=0)
+            initial = np.sum([parts[name] for name in INITIAL], axis=0)
             return Side(
                 illuminance, initial, emitted + reflectance * illuminance, parts, centroids, normals, cuts.face_areas
             )

@@ -228,20 +228,20 @@ def _faces_by_length(name: str, faces, vertex_count: int) -> dict[int, tuple[np.
     else:
         by_length: dict[int, tuple[list, list]] = {}
         for row, face in enumerate(faces):
-            rows, index = by_length.setdefault(len(face), ([], []))
-            rows.append(row)
-            index.append(list(face))
+            of_length = by_length.setdefault(len(face), ([], []))
+            of_length[0].append(row)
+            of_length[1].append(list(face))
         groups = {length: (np.array(rows), np.array(index)) for length, (rows, index) in by_length.items()}
     if not groups or not any(len(rows) for rows, _ in groups.values()):
         raise SceneError(f"Surface '{name}' has no faces; remove it, or leave out 'faces' to add one polygon")
-    for length, (rows, index) in groups.items():
+    for length, (row_of, index) in groups.items():
         if length < 3:
-            raise SceneError(f"Surface '{name}': face {rows[0]} has {length} vertices; a face needs at least 3")
+            raise SceneError(f"Surface '{name}': face {row_of[0]} has {length} vertices; a face needs at least 3")
         if index.dtype.kind not in "iu":
             raise SceneError(f"Surface '{name}': faces must hold whole numbers, not {index.dtype}")
         bad = np.flatnonzero(((index < 0) | (index >= vertex_count)).any(axis=1))
         if len(bad):
             raise SceneError(
-                f"Surface '{name}': face {rows[bad[0]]} names a vertex outside 0 … {vertex_count - 1}; mend the face"
+                f"Surface '{name}': face {row_of[bad[0]]} names a vertex outside 0 … {vertex_count - 1}; mend the face"
             )
     return groups

@@ -155,7 +155,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
     for k in np.flatnonzero(np.abs(cosine) > 1e-12):
         region = vertices[k][None]
         if beam.mouth is not None:
-            around, at = _mouth_prism(beam)
+            around, at = _mouth_prism(beam.mouth, beam.travel)
             for normal, offset in zip(around, at, strict=True):
                 region = polygons.clip(region, normal, offset)
             region = region[polygons.areas(region) > tolerance**2]
@@ -233,9 +233,9 @@ def prism(polygon, travel, cosine) -> tuple[np.ndarray, np.ndarray]:
     return normals, np.where(length[:, :, 0] > 0, offsets, -np.inf)
 
 
-def _mouth_prism(beam: Beam) -> tuple[np.ndarray, np.ndarray]:
-    facing = float(polygons.newell_normal(beam.mouth) @ beam.travel)
-    normals, offsets = prism(beam.mouth[None], beam.travel, np.array([facing]))
+def _mouth_prism(mouth: np.ndarray, travel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    facing = float(polygons.newell_normal(mouth) @ travel)
+    normals, offsets = prism(mouth[None], travel, np.array([facing]))
     bounding = normals[0].any(axis=1)
     return normals[0][bounding], offsets[0][bounding]
 
@@ -314,7 +314,7 @@ def light_points(outlines: Outlines, beams: list[Beam], points, normals) -> tupl
             slope = float(beam.travel @ beam.ahead)
             limit = ((points[rows] - beam.mouth[0]) @ beam.ahead) / slope
             back = points[rows] - limit[:, None] * beam.travel
-            around, at = _mouth_prism(beam)
+            around, at = _mouth_prism(beam.mouth, beam.travel)
             inside = (back @ around.T >= at - outlines.tolerance).all(axis=1) & (limit > outlines.tolerance)
             rows, limit = rows[inside], limit[inside]
         if len(rows):

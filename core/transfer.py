@@ -211,7 +211,7 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
         offsets=np.einsum("oc,oc->o", outline_normals, planes.outlines[:, 0]),
         materials=[surfaces[k].material for k in outline_surface],
         two_sided=two_sided[outline_surface],
-        tolerance=max(1e-9 * planes.size, 8 * np.finfo(float).eps * float(np.abs(planes.centre).max())),
+        tolerance=max(1e-9 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
     )
     return Geometry(
         planes, cuts, Targets.of(planes, patches, globe), outlines, [s.material for s in surfaces], normals, points

@@ -8,6 +8,7 @@ are settled by their covered share, in float64.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -47,7 +48,7 @@ class View:
         Distance along each beam to the obstacle seen wholly [m].
     columns : dict of int to (c,) int
         For each obstacle that may be seen wholly, the beams that may see it.
-    heights : (r, o) float
+    heights : (r, o) float, or what can be indexed like it
         Signed distance from each receiver to each obstacle's plane, along the obstacle's normal [m].
     """
 
@@ -59,7 +60,7 @@ class View:
     part_direction: np.ndarray
     nearest: np.ndarray
     columns: dict[int, np.ndarray]
-    heights: np.ndarray
+    heights: Any
 
 
 def look(points, beams: Beams, obstacles: Obstacles, tolerance: float, past: HalfSpace | None = None) -> View:
