@@ -320,6 +320,7 @@ def make_patches(planes: Planes, elements, element_sheet, element_active, areas,
             planes,
             centroids,
             [(used[k], order[bounds[k] : bounds[k + 1]]) for k in small],
+            sheet_area[small].sum(),
             patch_area,
             of_element,
             count,
@@ -345,7 +346,7 @@ def _cells_along(places: np.ndarray, wanted: float) -> int:
     return target
 
 
-def _gather_small(planes, centroids, groups, patch_area, of_element, count) -> int:
+def _gather_small(planes, centroids, groups, small_area, patch_area, of_element, count) -> int:
     sheet_of = np.array([sheet for sheet, _ in groups])
     middle = np.array([centroids[members].mean(axis=0) for _, members in groups])
     fronts = len(planes.sheet_surface)
@@ -354,8 +355,15 @@ def _gather_small(planes, centroids, groups, patch_area, of_element, count) -> i
     facing = np.argmax(np.abs(normal), axis=1) * 2 + (
         np.take_along_axis(normal, np.argmax(np.abs(normal), axis=1)[:, None], 1)[:, 0] > 0
     )
-    key = np.c_[planes.sheet_surface[sheet_of % fronts], back, facing, np.floor(middle / math.sqrt(patch_area))]
-    _, patch = np.unique(key, axis=0, return_inverse=True)
+    fair = 8 + 4 * round(small_area / patch_area)
+    side = math.sqrt(patch_area)
+    while True:
+        key = np.c_[planes.sheet_surface[sheet_of % fronts], back, facing, np.floor(middle / side)]
+        distinct, patch = np.unique(key, axis=0, return_inverse=True)
+        one_cell = len(np.unique(key[:, 3:], axis=0)) == 1
+        if len(distinct) <= fair or one_cell:
+            break
+        side *= 2  # leaves far apart share a patch
     patch = patch.reshape(-1)
     for number, (_, members) in zip(patch, groups, strict=True):
         of_element[members] = count + number

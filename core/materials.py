@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .checks import checked_number
 from .errors import SceneError
 
 _ROUNDING = 1e-12
@@ -199,10 +200,4 @@ def pane_optics(cosine, refractive_index: float, inner: float) -> tuple[np.ndarr
 def _number(name: str, value) -> float:
     if isinstance(value, tuple | list | np.ndarray):
         raise SceneError(f"Material: {name} is given per colour channel, which is not available yet; give one number")
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise SceneError(f"Material: {name} must be a number, not {value!r}") from None
-    if not math.isfinite(number):
-        raise SceneError(f"Material: {name} is {number}; give a finite number")
-    return number
+    return checked_number(value, f"Material: {name}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -132,8 +133,9 @@ def _polygon_pieces(name: str, points: np.ndarray):
     size = np.ptp(points, axis=0).max()
     twice_area = np.linalg.norm(normal)
     loop3 = points - points.mean(axis=0)
-    if size > 0 and twice_area > 0:
-        unit = normal / twice_area
+    if size > 0:
+        # an even bow-tie has no net area, but still a plane
+        unit = normal / twice_area if twice_area > 1e-9 * size**2 else np.linalg.svd(loop3 / size)[2][2]
         off = np.abs(loop3 @ unit).max()
         basis = polygons.plane_basis(unit)
         loop = loop3 @ basis.T
@@ -198,7 +200,12 @@ def _mesh_pieces(name: str, points: np.ndarray, faces):
         source.append(rows[convex])
         bent += int((~flat).sum())
         for row, polygon, normal in zip(rows[~convex], corners[~convex], unit[~convex], strict=True):
-            triangles = polygon[polygons.triangulate((polygon - polygon[0]) @ polygons.plane_basis(normal).T)]
+            loop = (polygon - polygon[0]) @ polygons.plane_basis(normal).T
+            if polygons.crosses_itself(loop):
+                raise SceneError(
+                    f"Surface '{name}': the edges of face {row} cross each other; split it or reorder its vertices"
+                )
+            triangles = polygon[polygons.triangulate(loop)]
             pieces.append(triangles)
             counts.append(np.full(len(triangles), 3))
             source.append(np.full(len(triangles), row))
@@ -227,10 +234,10 @@ def _faces_by_length(name: str, faces, vertex_count: int) -> dict[int, tuple[np.
         groups = {faces.shape[1]: (np.arange(len(faces)), faces)}
     else:
         by_length: dict[int, tuple[list, list]] = {}
-        for row, face in enumerate(faces):
+        for row, face in enumerate(_face_lists(name, faces)):
             of_length = by_length.setdefault(len(face), ([], []))
             of_length[0].append(row)
-            of_length[1].append(list(face))
+            of_length[1].append(face)
         groups = {length: (np.array(rows), np.array(index)) for length, (rows, index) in by_length.items()}
     if not groups or not any(len(rows) for rows, _ in groups.values()):
         raise SceneError(f"Surface '{name}' has no faces; remove it, or leave out 'faces' to add one polygon")
@@ -245,3 +252,13 @@ def _faces_by_length(name: str, faces, vertex_count: int) -> dict[int, tuple[np.
                 f"Surface '{name}': face {row_of[bad[0]]} names a vertex outside 0 … {vertex_count - 1}; mend the face"
             )
     return groups
+
+
+def _face_lists(name: str, faces) -> list[list[int]]:
+    try:
+        lists = [[operator.index(vertex) for vertex in face] for face in faces]
+    except TypeError:
+        raise SceneError(
+            f"Surface '{name}': faces must hold whole numbers, in an (f, 3) or (f, 4) array or in a list for each face"
+        ) from None
+    return lists

@@ -81,6 +81,8 @@ class Sunlight:
     truncated: float
 
 
+_ASIDE = np.array([6.1, 3.7, 7.1])
+
 NO_SUNLIGHT = Sunlight([], [], 0.0)
 
 
@@ -315,7 +317,8 @@ def light_points(outlines: Outlines, beams: list[Beam], points, normals) -> tupl
             limit = ((points[rows] - beam.mouth[0]) @ beam.ahead) / slope
             back = points[rows] - limit[:, None] * beam.travel
             around, at = _mouth_prism(beam.mouth, beam.travel)
-            inside = (back @ around.T >= at - outlines.tolerance).all(axis=1) & (limit > outlines.tolerance)
+            # beams that touch share their border: moved aside a little, a point on it is in one of them
+            inside = ((back + outlines.tolerance * _ASIDE) @ around.T >= at).all(axis=1) & (limit > outlines.tolerance)
             rows, limit = rows[inside], limit[inside]
         if len(rows):
             clear = transmittance_along(outlines, points[rows], -beam.travel, limit)

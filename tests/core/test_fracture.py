@@ -199,9 +199,6 @@ def test_curved_meshes_share_patches():
     assert (patches.of_element >= 0).all()
 
 
-@pytest.mark.xfail(
-    strict=True, reason="leaves far apart get a patch each, so memory grows with the square of their number"
-)
 def test_scattered_leaves_share_patches():
     rng = np.random.default_rng(3)
     centre = rng.uniform(0, 1, (2000, 3))
