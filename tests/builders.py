@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 
 import luzespecular as luz
 from luzespecular import fracture, transfer
@@ -41,12 +42,11 @@ def box(material=BLACK, size=(1.0, 1.0, 1.0), without=(), **others):
 
 def prepare_coarse(scene, elements=200, patches=100, **options):
     """`luz.prepare` with few receivers and patches: for what does not depend on their number, and is quick then."""
-    kept = fracture.FEWEST_ELEMENTS, transfer.PATCHES
-    fracture.FEWEST_ELEMENTS, transfer.PATCHES = elements, patches
-    try:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fracture, "FEWEST_ELEMENTS", elements)
+        patch.setattr(fracture, "ELEMENTS_PER_PLAIN_SURFACE", max(8, elements // 10))
+        patch.setattr(transfer, "PATCHES", patches)
         return luz.prepare(scene, **{"bands": 24, "max_area": math.inf, **options})
-    finally:
-        fracture.FEWEST_ELEMENTS, transfer.PATCHES = kept
 
 
 def flux(result, name):
