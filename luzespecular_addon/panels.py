@@ -98,7 +98,9 @@ class LUZESPECULAR_PT_sky(_Sidebar, bpy.types.Panel):
             row = layout.row()
             row.active = sky.use_sun
             row.prop(sky, "sun_illuminance")
-        layout.prop(sky, "ground_reflectance")
+        row = layout.row()
+        row.use_property_split = False  # the slider shows its long name inside
+        row.prop(sky, "ground_reflectance")
 
 
 class LUZESPECULAR_PT_surfaces(_Sidebar, bpy.types.Panel):
@@ -191,11 +193,10 @@ class LUZESPECULAR_PT_material(bpy.types.Panel):
     def draw(self, context):
         """Draw the panel."""
         layout = self.layout
-        layout.use_property_split = True
         material = context.material
         settings = material.luzespecular
         layout.row().prop(settings, "source", expand=True)
-        column = layout.column()
+        column = layout.column(align=True)
         optics = materials.read(material)
         if settings.source == "CUSTOM":
             column.prop(settings, "use_refractive_index")

@@ -100,7 +100,8 @@ def test_each_material_of_an_object_is_a_surface(addon, bpy, make):
 
 
 def test_material_index_beyond_the_slots_takes_the_last(addon, bpy, make):
-    square = make.square("Floor", material=make.material("Grey", diffuse_reflectance=0.3))
+    square = make.square("Floor", material=make.material("First", diffuse_reflectance=0.7))
+    square.data.materials.append(make.material("Last", diffuse_reflectance=0.3))
     square.data.polygons[0].material_index = 9
     assert exported(addon, bpy).scene.surfaces["Floor"].material.diffuse_reflectance == 0.3
 
