@@ -116,9 +116,8 @@ def _solve(options: argparse.Namespace) -> int:
     overview: list[tuple[str, ...]] = []
     told: set[notices.Notice] = set()
     with bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
-        for hour in hours:
+        for hour, planned in _plans(settings, hours):
             settings.site.hour = hour
-            planned = study.collect(bpy.context)
             _tell(notice for notice in planned.notices if notice not in told)
             told.update(planned.notices)
             result = _run(planned)
@@ -135,6 +134,16 @@ def _solve(options: argparse.Namespace) -> int:
     header = ("moment", "time", *tables.SURFACE_HEADER)
     _written(tables.write_csv(options.out / f"{stem}_surfaces.csv", header, overview))
     return 0
+
+
+def _plans(settings: bpy.types.PropertyGroup, hours: list[float]) -> list[tuple[float, study.Study]]:
+    """Collect all hours before any is solved, so that nothing has been written where one is refused."""
+    plans: list[tuple[float, study.Study]] = []
+    for hour in hours:
+        settings.site.hour = hour
+        exported = plans[0][1].export if plans else None
+        plans.append((hour, study.collect(bpy.context, exported)))
+    return plans
 
 
 def _scene(name: str | None) -> bpy.types.Scene:

@@ -63,8 +63,14 @@ class Study:
         return transfer.solve(self.daylight, progress=_part(progress, share, 1.0))
 
 
-def collect(context: bpy.types.Context) -> Study:
+def collect(context: bpy.types.Context, exported: export.Export | None = None) -> Study:
     """Read scene, light and options, and check them; nothing is changed.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+    exported : export.Export, optional
+        The scene, where it is known already and only the light is another.
 
     Raises
     ------
@@ -74,11 +80,13 @@ def collect(context: bpy.types.Context) -> Study:
     scene = context.scene
     daylight, remarks = light.daylight(scene)
     stop_on_errors(writeback.refusals(scene.objects))
-    exported = export.export_scene(context)
+    exported = exported or export.export_scene(context)
     if daylight.sky is None and daylight.sun is None and not exported.luminous:
-        raise refuse(
-            rpt_("There is no light: the Sun is down or off, there is no sky, no surface is luminous. Set hour or sky")
+        text = rpt_(
+            "There is no light at {hour}: the Sun is down or off, there is no sky, no surface is luminous. "
+            "Set hour or sky"
         )
+        raise refuse(text.format(hour=light.clock(scene.luzespecular.site.hour)))
     return Study(
         exported,
         daylight,

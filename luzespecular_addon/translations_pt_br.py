@@ -330,8 +330,8 @@ _NOTICES = {
     "The Sun is below the horizon ({altitude:.1f}°): there is no sunlight, only the sky is solved": (
         "O Sol está abaixo do horizonte ({altitude:.1f}°): não há luz solar, só o céu é calculado"
     ),
-    "There is no light: the Sun is down or off, there is no sky, no surface is luminous. Set hour or sky": (
-        "Não há luz: o Sol está abaixo do horizonte ou desligado, não há céu e nenhuma superfície é luminosa. "
+    "There is no light at {hour}: the Sun is down or off, there is no sky, no surface is luminous. Set hour or sky": (
+        "Não há luz às {hour}: o Sol está abaixo do horizonte ou desligado, não há céu nem superfície luminosa. "
         "Ajuste a hora ou o céu"
     ),
     "The scene changed while it was solved, so the results were thrown away: solve again": (

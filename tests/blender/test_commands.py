@@ -124,6 +124,12 @@ def test_bad_input_exits_with_1_and_writes_nothing(addon, bpy, saved, tmp_path, 
     assert not any((tmp_path / "out").glob("*"))
 
 
+def test_one_dark_hour_refuses_all_before_any_is_solved(addon, bpy, saved, tmp_path, capsys):
+    assert addon.commands.main(["solve", "--sky", "clear", "--hours", "12,23", "--out", str(tmp_path / "out")]) == 1
+    assert "no light at 23:00" in capsys.readouterr().err
+    assert not any((tmp_path / "out").glob("*"))
+
+
 def test_empty_scene_exits_with_1(addon, bpy, tmp_path, capsys):
     assert addon.commands.main(["solve", "--out", str(tmp_path / "out")]) == 1
     assert "no object with faces" in capsys.readouterr().err
