@@ -10,7 +10,7 @@ from bpy.app.translations import pgettext_iface as iface_
 from gpu_extras.batch import batch_for_shader
 
 from . import colours, display
-from .properties import QUANTITY_ITEMS
+from .choices import QUANTITY_ITEMS
 from .translations import CONTEXT
 
 _STEPS = 64

@@ -14,9 +14,9 @@ from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import core as luz
 from . import display, export, light, results_object, session, tables, writeback
+from .choices import SKY_ITEMS
 from .materials import as_typed
 from .notices import Notice, refuse, stop_on_errors
-from .properties import SKY_ITEMS
 from .translations import CONTEXT
 
 Progress = Callable[[float, str], bool]

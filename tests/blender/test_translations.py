@@ -71,7 +71,7 @@ def interface_texts():
                         texts.add(("*", _literal(statement.value)))
                     if "bl_label" in targets:
                         texts.add(("Operator" if operator else "*", _literal(statement.value)))
-        if path.name == "properties.py":
+        if path.name in ("choices.py", "properties.py"):
             texts.update(("*", text) for text in _enum_items(tree))
     return texts
 
