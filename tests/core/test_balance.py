@@ -1,0 +1,147 @@
+"""The lumen balance: what enters is absorbed, escapes, or is lost and said so."""
+
+import math
+
+import numpy as np
+import pytest
+from builders import BLACK, DARK, UNIFORM, box, box_polygons, flux, prepare_coarse, scene_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import luzespecular as luz
+
+LIGHT = luz.Daylight(
+    sky=luz.CIESky(12, sun_altitude=40, sun_azimuth=0, horizontal_illuminance=10_000),
+    sun=luz.Sun(altitude=40, azimuth=0, normal_illuminance=80_000),
+    ground_reflectance=0.2,
+)
+
+
+def total(balance):
+    return sum(balance.absorbed.values()) + balance.escaped + balance.unlit + balance.truncated
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.lists(st.floats(0, 0.95), min_size=6, max_size=6), st.lists(st.floats(0, 1000), min_size=6, max_size=6))
+def test_all_lamplight_of_a_closed_box_is_absorbed(reflectances, exitances):
+    scene = luz.Scene()
+    for (name, polygon), rho, own in zip(box_polygons((2, 1.5, 1)).items(), reflectances, exitances, strict=True):
+        scene.add(name, polygon, luz.Material(diffuse_reflectance=rho, exitance=own))
+    result = prepare_coarse(scene, elements=300, patches=100).solve(DARK, tolerance=1e-7)
+    balance = result.balance
+    emitted = sum(
+        own * result.areas[result.faces_of(name)].sum() for name, own in zip(result.surfaces, exitances, strict=True)
+    )
+    assert balance.entering == pytest.approx(emitted, abs=1e-9)
+    assert balance.escaped == balance.unlit == balance.truncated == 0
+    if emitted > 1e-6:
+        assert abs(balance.defect) < 0.02
+        assert sum(balance.absorbed.values()) == pytest.approx(emitted, rel=0.02)
+    for name, rho in zip(result.surfaces, reflectances, strict=True):
+        assert balance.absorbed[name] == pytest.approx((1 - rho) * flux(result, name), rel=1e-5, abs=1e-6)
+
+
+def test_an_even_closed_box_closes_to_a_millionth():
+    scene = box(luz.Material(diffuse_reflectance=0.9, exitance=100.0), (3, 2, 1.5))
+    balance = prepare_coarse(scene).solve(DARK, tolerance=1e-8).balance
+    assert abs(balance.defect) < 1e-6
+    assert balance.entering == pytest.approx(100 * 27)
+
+
+def test_daylight_of_an_open_room():
+    """What lands enters; what is reflected out of the opening escapes."""
+    result = prepare_coarse(
+        box(luz.Material(diffuse_reflectance=0.5), (3, 3, 3), without=("north",)), elements=1000
+    ).solve(LIGHT)
+    balance = result.balance
+    assert balance.entering == pytest.approx(result.initial @ result.areas, rel=1e-5)
+    assert set(balance.absorbed) == set(result.surfaces)
+    assert 0.05 * balance.entering < balance.escaped < 0.3 * balance.entering
+    assert balance.unlit == balance.truncated == 0
+    assert abs(balance.defect) < 2e-3
+    assert total(balance) == pytest.approx(balance.entering, rel=2e-3)
+
+
+def test_sun_through_a_window_is_counted_once(light_shelf):
+    transfer = prepare_coarse(light_shelf.scene("S1"), elements=1500, patches=400, max_area=0.1)
+    result = transfer.solve(light_shelf.daylight(12.0, sky=None))
+    # absorbed by the mirror shelf (a tenth), and by what the rest of it lights
+    assert result.balance.absorbed["shelf_top"] == pytest.approx(0.1 * flux(result, "shelf_top"), rel=1e-6)
+    landed = {name: result.components["sun_direct"][result.faces_of(name)] for name in result.surfaces}
+    landed = {name: float(lux @ result.areas[result.faces_of(name)]) for name, lux in landed.items()}
+    ceiling = float((result.components["sun_specular"] * result.areas)[result.faces_of("ceiling")].sum())
+    assert ceiling == pytest.approx(0.9 * landed["shelf_top"], rel=1e-9)
+    expected = sum(landed.values()) - landed["shelf_top"] + 0.1 * landed["shelf_top"] + ceiling
+    assert result.balance.entering == pytest.approx(expected, rel=1e-6)
+    assert abs(result.balance.defect) < 0.02
+
+
+def test_backs_swallow_light_and_it_is_said():
+    """A wall of a box turned outwards: its black back takes what falls on it."""
+    white = luz.Material(diffuse_reflectance=0.5, exitance=100)
+    polygons = box_polygons()
+    polygons["east"] = polygons["east"][::-1]
+    result = prepare_coarse(scene_of(polygons, white), elements=600).solve(DARK)
+    balance = result.balance
+    assert balance.unlit > 0.1 * balance.entering
+    assert balance.absorbed["east"] == 0
+    # the turned wall shines and lands outside, where nothing is: its own light escapes
+    assert balance.escaped == pytest.approx(100, rel=1e-3)
+    assert abs(balance.defect) < 0.01
+
+
+def test_two_sided_surfaces_absorb_on_both_sides():
+    scene = box(BLACK, (2, 1, 1), east=luz.Material(exitance=100), west=luz.Material(exitance=300))
+    grey = luz.Material(diffuse_reflectance=0.3)
+    scene.add("screen", [[1, 0, 0], [1, 1, 0], [1, 1, 1], [1, 0, 1]], grey, two_sided=True)
+    result = prepare_coarse(scene, elements=1500, patches=300).solve(DARK)
+    faces = result.faces_of("screen")
+    both = (result.illuminance[faces] + result.back.illuminance[faces]) @ result.areas[faces]
+    assert result.balance.absorbed["screen"] == pytest.approx(0.7 * both, rel=1e-5)
+    assert result.balance.entering == pytest.approx(400)
+    assert abs(result.balance.defect) < 0.01
+
+
+def test_mirrors_absorb_their_rest():
+    scene = box(BLACK, floor=luz.Material(specular_reflectance=0.8), ceiling=luz.Material(exitance=1000))
+    result = prepare_coarse(scene, elements=2000, patches=300).solve(DARK)
+    balance = result.balance
+    assert balance.absorbed["floor"] == pytest.approx(0.2 * flux(result, "floor"), rel=1e-5)
+    assert balance.entering == pytest.approx(1000)
+    assert abs(balance.defect) < 0.01
+
+
+@pytest.mark.parametrize(("cutoff", "least", "most"), [(0.05, 0, 1e-6), (0.7, 0.005, 0.9)])
+def test_chains_cut_off_are_booked(cutoff, least, most):
+    """The deeper chains are followed, the less is cut; what is cut still closes the balance."""
+    plates = box_polygons((4, 4, 1))
+    scene = scene_of({k: plates[k] for k in ("floor", "ceiling")}, luz.Material(specular_reflectance=0.9))
+    scene.add("lamp", [[1, 1, 0.5], [3, 1, 0.5], [3, 3, 0.5], [1, 3, 0.5]], luz.Material(exitance=1000))
+    transfer = prepare_coarse(scene, elements=1000, patches=30, specular_cutoff=cutoff, bands=12)
+    for light in (DARK, luz.Daylight(sun=luz.Sun(direction=(-1, 0, 1), normal_illuminance=1000.0))):
+        balance = transfer.solve(light).balance
+        assert least <= balance.truncated / balance.entering <= most
+        assert abs(balance.defect) < 0.03
+
+
+def test_no_light_no_lumens():
+    result = prepare_coarse(box(luz.Material(diffuse_reflectance=0.5), without=("ceiling",))).solve(DARK)
+    balance = result.balance
+    assert balance.entering == balance.escaped == balance.unlit == balance.truncated == balance.defect == 0
+    assert set(balance.absorbed.values()) == {0.0}
+
+
+def test_the_balance_follows_the_cycles():
+    """Cut after n reflections, what was still under way shows as the defect: in a closed even box, rho to the n + 1."""
+    transfer = prepare_coarse(box(luz.Material(diffuse_reflectance=0.5, exitance=100.0)))
+    for cycles in (0, 1, 4):
+        balance = transfer.solve(DARK, cycles=cycles).balance
+        assert balance.defect == pytest.approx(0.5 ** (cycles + 1), rel=1e-3)
+
+
+def test_a_glass_roof_takes_its_share():
+    glass = luz.Material(regular_transmittance=0.6)
+    result = prepare_coarse(box(BLACK, ceiling=glass), elements=500).solve(UNIFORM)
+    inside = sum(flux(result, name) for name in ("floor", "south", "north", "west", "east"))
+    assert inside == pytest.approx(0.6 * math.pi * 1000, rel=0.01)
+    assert np.isfinite(total(result.balance))
