@@ -7,7 +7,7 @@ angles are nearly equal and 60 bands give the paper's 5,902 parcels.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +17,7 @@ from .errors import SceneError
 PARCELS_PER_BAND_FACTOR = 2.55
 MAX_BANDS = 2000
 _HORIZON_SUBDIVISION = 16
+_POLAR_BANDS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,18 +134,39 @@ class Globe:
         -------
         (m, splits², 3) float
         """
-        parcels = np.asarray(parcels)
         step = (np.arange(splits) + 0.5) / splits
+        down, across = np.meshgrid(step, step, indexing="ij")
+        return self._inside(parcels, down.ravel(), across.ravel())
+
+    def scattered(self, parcels, order: int) -> np.ndarray:
+        """Directions spread evenly over each parcel, no two in line along it or across it.
+
+        A Fibonacci lattice (Zaremba 1966): edges that run along a band are met one ray at a time, not a row at a time.
+
+        Parameters
+        ----------
+        parcels : (m,) array of int
+        order : int
+            Index of a Fibonacci number F, the number of directions: 7 gives 13, 11 gives 89.
+
+        Returns
+        -------
+        (m, F, 3) float
+        """
+        before, count = 0, 1
+        for _ in range(order - 1):
+            before, count = count, before + count
+        place = np.arange(count) + 0.5
+        return self._inside(parcels, place / count, np.mod(place * before / count, 1.0))
+
+    def _inside(self, parcels, down: np.ndarray, across: np.ndarray) -> np.ndarray:
+        """(m, s, 3) float: directions at places 0 … 1 of each parcel, of equal solid angle."""
+        parcels = np.asarray(parcels)
         c0 = np.cos(self.polar_edges[self.band_of[parcels]])[:, None]
         c1 = np.cos(self.polar_edges[self.band_of[parcels] + 1])[:, None]
-        cosine = c0 + (c1 - c0) * step
-        azimuth = self.azimuth[parcels][:, None] + (step - 0.5) * self.azimuth_width[parcels][:, None]
-        polar = np.arccos(np.clip(cosine, -1.0, 1.0))
-        grid = direction_of(
-            np.repeat(polar, splits, axis=1).ravel(),
-            np.broadcast_to(np.tile(azimuth, splits), (len(parcels), splits**2)).ravel(),
-        )
-        return grid.reshape(len(parcels), splits**2, 3)
+        polar = np.arccos(np.clip(c0 + (c1 - c0) * down, -1.0, 1.0))
+        azimuth = self.azimuth[parcels][:, None] + (across - 0.5) * self.azimuth_width[parcels][:, None]
+        return direction_of(polar, azimuth)
 
     def parcel_of(self, directions) -> np.ndarray:
         """Index of the parcel that holds each direction, in constant time.
@@ -243,6 +265,9 @@ class Globe:
             sampled = weights[cut].sum()
             if sampled > 0:
                 weights[cut] *= (1.0 - weights[free].sum()) / sampled
+        band = self.band_of[parcels]
+        odd = np.minimum(band, self.bands - 1 - band) < _POLAR_BANDS
+        odd[cut] = True
         keep = weights > 0
         return Hemisphere(
             normal=n,
@@ -251,6 +276,8 @@ class Globe:
             weights=weights[keep] / weights[keep].sum(),
             half_widths=half_widths[keep],
             axes=self.axes[parcels[keep]],
+            odd=odd[keep],
+            globe=self,
         )
 
 
@@ -266,6 +293,9 @@ class Hemisphere:
     weights : (k,) float, ∫ cos θ dω / π over that part; they sum to 1
     half_widths : (k, 2) float [rad]
     axes : (k, 2, 3) float, unit vectors along the half widths
+    odd : (k,) bool
+        Parcels that a rectangle stands for badly: cut by the horizon, or next to a pole.
+    globe : Globe
     """
 
     normal: np.ndarray
@@ -274,6 +304,15 @@ class Hemisphere:
     weights: np.ndarray
     half_widths: np.ndarray
     axes: np.ndarray
+    odd: np.ndarray
+    globe: Globe
+    _parts: dict[int, np.ndarray] = field(default_factory=dict)
+
+    def scattered(self, order: int) -> np.ndarray:
+        """(k, F, 3) float: see `Globe.scattered`; found once."""
+        if order not in self._parts:
+            self._parts[order] = self.globe.scattered(self.parcels, order)
+        return self._parts[order]
 
 
 def direction_of(polar, azimuth) -> np.ndarray:

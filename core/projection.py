@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -16,32 +17,54 @@ class Beams:
 
     Attributes
     ----------
-    directions : (k, 3) float, unit
-    axes : (k, 2, 3) float, unit vectors across each beam
-    half_widths : (k, 2) float [rad]
+    hemisphere : Hemisphere
+        What the beams began in.
     columns : (k,) int
-        Index of each beam in the hemisphere that it began in.
+        Index of each beam there.
+    turn : (3, 3) float
+        What the mirrors on the way made of directions: ``d ← turn @ d``.
     """
 
-    directions: np.ndarray
-    axes: np.ndarray
-    half_widths: np.ndarray
+    hemisphere: Hemisphere
     columns: np.ndarray
+    turn: np.ndarray
 
     @classmethod
     def of(cls, hemisphere: Hemisphere) -> Beams:
         """All beams of a hemisphere."""
-        return cls(
-            hemisphere.directions, hemisphere.axes, hemisphere.half_widths, np.arange(len(hemisphere.directions))
-        )
+        return cls(hemisphere, np.arange(len(hemisphere.directions)), np.eye(3))
 
     def take(self, index) -> Beams:
         """Some of the beams."""
-        return Beams(self.directions[index], self.axes[index], self.half_widths[index], self.columns[index])
+        return Beams(self.hemisphere, self.columns[index], self.turn)
 
     def reflected(self, normal) -> Beams:
         """The beams as a mirror of this unit normal throws them."""
-        return Beams(reflect(self.directions, normal), reflect(self.axes, normal), self.half_widths, self.columns)
+        return Beams(self.hemisphere, self.columns, reflect(self.turn.T, normal).T)
+
+    @cached_property
+    def directions(self) -> np.ndarray:
+        """(k, 3) float, unit: centres of the beams."""
+        return self.hemisphere.directions[self.columns] @ self.turn.T
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """(k, 2, 3) float: unit vectors across each beam."""
+        return self.hemisphere.axes[self.columns] @ self.turn.T
+
+    @cached_property
+    def half_widths(self) -> np.ndarray:
+        """(k, 2) float [rad]."""
+        return self.hemisphere.half_widths[self.columns]
+
+    @property
+    def odd(self) -> np.ndarray:
+        """(k,) bool: beams that a rectangle stands for badly."""
+        return self.hemisphere.odd[self.columns]
+
+    def rays(self, index, order: int) -> np.ndarray:
+        """(m, F, 3) float: directions that make up some of the beams, see `Globe.scattered`."""
+        return self.hemisphere.scattered(order)[self.columns[index]] @ self.turn.T
 
     @property
     def reach(self) -> np.ndarray:

@@ -92,83 +92,120 @@ def gather_sources(
         return total
     horizon = HalfSpace(np.asarray(normal, float), float(np.asarray(normal) @ points[0]))
     lit = _above(outlines.vertices, horizon, outlines.tolerance)
-    mirrors = [o for o in np.flatnonzero(lit) if outlines.materials[o].is_specular]
+    mirrors = [int(o) for o in np.flatnonzero(lit) if outlines.materials[o].is_specular]
     for source in sources:
-        checkpoint()
-        _gather(outlines, source, points, horizon, [], 1.0, None, mirrors, cutoff, 0, total)
+        view = _SourceView(outlines, source, mirrors, cutoff, checkpoint)
+        total += view.illuminance(_Leg(np.asarray(points, float), horizon, (), 1.0, None, 0))
     return total
 
 
-def _gather(outlines, source, points, horizon, screens, throughput, beyond, mirrors, cutoff, depth, total) -> None:
-    """Add what comes from the source past these screens; then look for it in one more mirror."""
-    plane, at = source.plane
-    visible = polygons.clip(source.polygon[None], horizon.normal, horizon.offset)
-    if beyond is not None:
-        visible = polygons.clip(visible, beyond.normal, beyond.offset)
-    rows = np.flatnonzero(points @ plane - at > outlines.tolerance)
-    if len(rows) and polygons.areas(visible)[0] > outlines.tolerance**2:
-        limits = [HalfSpace(plane, at), horizon] + ([beyond] if beyond is not None else [])
-        blockers = [Screen(polygon, o, False) for o, polygon in _between(outlines, points[rows], visible[0], limits)]
-        total[rows] += source.exitance * _seen_factor(
-            outlines, visible[0], points[rows], horizon.normal, [*screens, *blockers]
-        )
-    if depth >= DEEPEST_CHAIN:
-        return
-    for o in mirrors:
-        _gather_mirrored(
-            outlines, source, points, horizon, screens, throughput, beyond, mirrors, cutoff, depth, total, o
-        )
+@dataclass(frozen=True, eq=False)
+class _Leg:
+    """Where receivers look from: themselves, or their image after some mirrors.
+
+    Attributes
+    ----------
+    points : (r, 3) float
+    horizon : HalfSpace
+        Above their own plane, mirrored likewise.
+    screens : tuple of Screen
+        What lies on the way so far.
+    throughput : float
+        Largest product of the reflectances so far.
+    beyond : HalfSpace or None
+        Behind the last mirror, where they look.
+    depth : int
+        Mirrors so far.
+    """
+
+    points: np.ndarray
+    horizon: HalfSpace
+    screens: tuple[Screen, ...]
+    throughput: float
+    beyond: HalfSpace | None
+    depth: int
+
+    @property
+    def limits(self) -> list[HalfSpace]:
+        """What all that is seen lies within."""
+        return [self.horizon] if self.beyond is None else [self.horizon, self.beyond]
+
+    def clipped(self, polygon) -> np.ndarray:
+        """(1, v, 3) float: part of a polygon within the limits."""
+        part = polygon[None]
+        for half in self.limits:
+            part = polygons.clip(part, half.normal, half.offset)
+        return part
 
 
-def _gather_mirrored(
-    outlines, source, points, horizon, screens, throughput, beyond, mirrors, cutoff, depth, total, o
-) -> None:
-    material, two_sided = outlines.materials[o], outlines.two_sided[o]
-    product = throughput * float(
-        np.max(
-            material.specular_at(np.linspace(0.05, 1, 8))
-            if material.refractive_index
-            else material.specular_reflectance
-        )
-    )
-    if product < cutoff:
-        return
-    normal, offset = outlines.normals[o], float(outlines.offsets[o])
-    sides = (1.0, -1.0) if two_sided or material.reflects_both_sides else (1.0,)
-    for side in sides:
-        rows = np.flatnonzero(side * (points @ normal - offset) > outlines.tolerance)
-        ahead = HalfSpace(side * normal, side * offset)
-        if not len(rows) or not (source.polygon @ ahead.normal - ahead.offset > outlines.tolerance).any():
-            continue
-        aperture = polygons.clip(outlines.vertices[o][None], horizon.normal, horizon.offset)
-        if beyond is not None:
-            aperture = polygons.clip(aperture, beyond.normal, beyond.offset)
-        if polygons.areas(aperture)[0] <= outlines.tolerance**2:
-            continue
-        if screens:
-            mouths = [s for s in screens if s.aperture]
-            rows = rows[_seen_factor(outlines, aperture[0], points[rows], horizon.normal, mouths, any_side=True) > 0]
+@dataclass(frozen=True, eq=False)
+class _SourceView:
+    """One source, as receivers of one plane see it straight and in mirrors."""
+
+    outlines: Outlines
+    source: Source
+    mirrors: list[int]
+    cutoff: float
+    checkpoint: Callable[[], None]
+
+    def illuminance(self, leg: _Leg) -> np.ndarray:
+        """(r,) float: light that comes past the leg's screens, and by any further mirror [lx]."""
+        self.checkpoint()
+        outlines, tolerance = self.outlines, self.outlines.tolerance
+        total = np.zeros(len(leg.points))
+        plane, at = self.source.plane
+        visible = leg.clipped(self.source.polygon)
+        rows = np.flatnonzero(leg.points @ plane - at > tolerance)
+        if len(rows) and polygons.areas(visible)[0] > tolerance**2:
+            limits = [HalfSpace(plane, at), *leg.limits]
+            between = _between(outlines, leg.points[rows], visible[0], limits)
+            screens = [*leg.screens, *(Screen(polygon, o, False) for o, polygon in between)]
+            factor = _seen_factor(outlines, visible[0], leg.points[rows], leg.horizon.normal, screens)
+            total[rows] += self.source.exitance * factor
+        if leg.depth < DEEPEST_CHAIN:
+            for mirror in self.mirrors:
+                self._add_mirrored(leg, mirror, total)
+        return total
+
+    def _add_mirrored(self, leg: _Leg, mirror: int, total: np.ndarray) -> None:
+        outlines, tolerance = self.outlines, self.outlines.tolerance
+        material = outlines.materials[mirror]
+        throughput = leg.throughput * float(material.specular_at(np.linspace(0.05, 1.0, 8)).max())
+        outline = outlines.vertices[mirror]
+        if throughput < self.cutoff:
+            return
+        if leg.beyond is not None and not _above(outline[None], leg.beyond, tolerance)[0]:
+            return  # the mirror just used, or one in its plane
+        aperture = leg.clipped(outline)
+        if polygons.areas(aperture)[0] <= tolerance**2:
+            return
+        normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
+        both = outlines.two_sided[mirror] or material.reflects_both_sides
+        for side in (1.0, -1.0) if both else (1.0,):
+            ahead = HalfSpace(side * normal, side * offset)
+            rows = np.flatnonzero(leg.points @ ahead.normal - ahead.offset > tolerance)
+            if not len(rows) or not _above(self.source.polygon[None], ahead, tolerance)[0]:
+                continue
+            mouths = [s for s in leg.screens if s.aperture]
+            if mouths:
+                open_to = _seen_factor(
+                    outlines, aperture[0], leg.points[rows], leg.horizon.normal, mouths, any_side=True
+                )
+                rows = rows[open_to > 0]
             if not len(rows):
                 continue
-        limits = [ahead, horizon] + ([beyond] if beyond is not None else [])
-        before = [Screen(p, b, False) for b, p in _between(outlines, points[rows], aperture[0], limits, skip=o)]
-        passed = [s.reflected(normal, offset) for s in [*screens, *before]]
-        through = Screen(aperture[0], int(o), True)
-        part = np.zeros(len(rows))
-        _gather(
-            outlines,
-            source,
-            reflect_points(points[rows], normal, offset),
-            horizon.reflected(normal, offset),
-            [*passed, through],
-            product,
-            ahead,
-            mirrors,
-            cutoff,
-            depth + 1,
-            part,
-        )
-        total[rows] += part
+            between = _between(outlines, leg.points[rows], aperture[0], [ahead, *leg.limits], skip=mirror)
+            screens = [*leg.screens, *(Screen(polygon, o, False) for o, polygon in between)]
+            total[rows] += self.illuminance(
+                _Leg(
+                    reflect_points(leg.points[rows], normal, offset),
+                    leg.horizon.reflected(normal, offset),
+                    (*(s.reflected(normal, offset) for s in screens), Screen(aperture[0], mirror, True)),
+                    throughput,
+                    ahead,
+                    leg.depth + 1,
+                )
+            )
 
 
 def _above(vertices, half: HalfSpace, tolerance: float) -> np.ndarray:

@@ -116,9 +116,7 @@ class Sighting:
         v = self.view
         if self.rays:
             return self.weights[:, 0]
-        cosine = self.beams.directions @ self.normal
-        tilt = (v.part_direction @ self.normal) / cosine[v.part_beam]
-        return self.weights[v.part_row, v.part_beam] * v.part_share * np.clip(tilt, 0.0, 2.0)
+        return self.weights[v.part_row, v.part_beam] * v.part_share
 
 
 @dataclass
@@ -204,9 +202,8 @@ class _Rays:
         )
 
 
-def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrored: bool) -> Sighting:
+def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrored: bool, beams: Beams) -> Sighting:
     n = len(rays.rows)
-    none = np.zeros((0, 2))
     view = View(
         seen=np.full((n, 0), SHARED, np.int32),
         part_row=np.arange(n),
@@ -218,7 +215,6 @@ def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrored: bool) -> S
         columns={},
         heights=_Heights(outlines, rays.points),
     )
-    beams = Beams(np.zeros((0, 3)), np.zeros((0, 2, 3)), none, np.zeros(0, np.int64))
     return Sighting(
         rays.rows,
         rays.points,
@@ -297,7 +293,9 @@ class GroupSight:
             rows, origin, horizon, beyond, beams, weights, throughput, mirrored, chain = stack.pop()
             checkpoint()
             obstacles = self._cut(chain, [horizon, *beyond])
-            view = look(origin, beams, obstacles, self.outlines.tolerance, beyond[0] if beyond else None)
+            view = look(
+                origin, horizon.normal, beams, obstacles, self.outlines.tolerance, beyond[0] if beyond else None
+            )
             sighting = Sighting(rows, origin, horizon.normal, beams, obstacles, view, weights, mirrored, self.outlines)
             yield sighting
             if self.outlines.any_specular:
@@ -307,13 +305,14 @@ class GroupSight:
     def _trace(self, left: list[_Rays], truncated, checkpoint) -> Iterator[Sighting]:
         """Follow rays one by one, from where the mirrored view was too narrow to be worth sharing."""
         rays = _Rays.joined(left)
+        none = Beams.of(self.hemisphere).take(np.zeros(0, np.int64))
         while len(rays.rows):
             checkpoint()
             outline, distance = self.outlines.rays.nearest(rays.points, rays.directions)
             for mirrored in (False, True):
                 mine = np.flatnonzero(rays.mirrored == mirrored)
                 if len(mine):
-                    yield _ray_sighting(self.outlines, rays.take(mine), outline[mine], mirrored)
+                    yield _ray_sighting(self.outlines, rays.take(mine), outline[mine], mirrored, none)
             met = np.flatnonzero(outline >= 0)
             place = rays.points[met] + distance[met, None] * rays.directions[met]
             onward = []

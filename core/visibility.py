@@ -7,7 +7,7 @@ are settled by their covered share, in float64.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -21,10 +21,14 @@ OPEN = -1
 SHARED = -2
 """A parcel that an edge crosses: see the view's parts."""
 
-_SUBRAYS = 4
+_RAYS = (7, 11)
+"""Order of the lattice of rays in a beam that several edges cross: 13 rays, then 89 where sky shows in part."""
 
 _ON_EDGE = 1e-6
 """Rays this close to an edge [rad] count as inside, so that none slips between two obstacles that share it."""
+
+_SEAM = 1e-4
+"""Edges whose planes through the receiver are this close [rad], with an obstacle on either side, leave no opening."""
 
 _SAME_EDGE = 1e-4
 """Shares of two obstacles at one edge that sum to 1 this closely belong to obstacles that share the edge."""
@@ -41,7 +45,7 @@ class View:
     part_row, part_beam, part_seen : (p,) int
         Receiver, beam and obstacle (or OPEN) of each part of a shared beam.
     part_share : (p,) float
-        Share of the beam; the shares of one beam sum to 1.
+        Share of the beam's cosine-weighted solid angle; the shares of one beam sum to 1.
     part_direction : (p, 3) float
         Towards the part's centre, not normalised.
     nearest : (r, k) float32
@@ -63,13 +67,15 @@ class View:
     heights: Any
 
 
-def look(points, beams: Beams, obstacles: Obstacles, tolerance: float, past: HalfSpace | None = None) -> View:
+def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, past: HalfSpace | None = None) -> View:
     """Find the nearest obstacle along each beam from each point.
 
     Parameters
     ----------
     points : (r, 3) float
         Receivers, near each other for speed (columns of beams are settled for all of them at once where possible).
+    normal : (3,) float
+        Of the receivers' plane: parts of a beam count by the cosine.
     beams : Beams
     obstacles : Obstacles
         Cut to what these beams can meet.
@@ -133,7 +139,9 @@ def look(points, beams: Beams, obstacles: Obstacles, tolerance: float, past: Hal
         empty = np.zeros(0, np.int64)
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
     candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
-    return _settle_parts(seen, nearest, possible, candidates, planes, heights, slopes, beams, obstacles)
+    return _settle_parts(
+        seen, nearest, possible, candidates, planes, heights, slopes, np.asarray(normal, float), beams, obstacles
+    )
 
 
 def _distance_to(plane: HalfSpace, points: np.ndarray, directions: np.ndarray) -> np.ndarray:
@@ -182,7 +190,95 @@ def _edge_sines(edges: np.ndarray, directions: np.ndarray) -> list[np.ndarray]:
     return [np.dot(np.ascontiguousarray(edges[:, e]), across) for e in range(edges.shape[1])]
 
 
-def _settle_parts(seen, nearest, possible, candidates, planes, heights, slopes, beams, obstacles) -> View:
+@dataclass(frozen=True, eq=False)
+class _Crossed:
+    """Obstacles whose edges cross beams, sorted by beam and then by distance; all arrays of length n.
+
+    ``share`` and ``offset`` are those by the crossing edge alone, where there is just one; ``edge_sum`` is the sum of
+    the normals of the crossing edges' planes.
+    """
+
+    row: np.ndarray
+    beam: np.ndarray
+    obstacle: np.ndarray
+    sine: np.ndarray
+    share: np.ndarray
+    offset: np.ndarray
+    distance: np.ndarray
+    edges: np.ndarray
+    edge_sum: np.ndarray
+    group: np.ndarray
+
+    def take(self, index) -> _Crossed:
+        """Some of them."""
+        return _Crossed(*(getattr(self, f.name)[index] for f in fields(self)))
+
+    @property
+    def starts(self) -> np.ndarray:
+        """Where each beam's obstacles begin."""
+        return np.flatnonzero(np.concatenate(([True], self.group[1:] != self.group[:-1])))
+
+
+def _settle_parts(
+    seen, nearest, possible, candidates, planes, heights, slopes, normal, beams: Beams, obstacles: Obstacles
+) -> View:
+    crossed = _crossings(nearest, candidates, planes, heights, slopes, beams)
+    if not len(crossed.row):
+        empty = np.zeros(0, np.int64)
+        return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
+    starts, group = crossed.starts, crossed.group
+    head = crossed.row[starts], crossed.beam[starts]
+    background = seen[head]
+    total = np.add.reduceat(crossed.share, starts)
+    size = np.diff(np.append(starts, len(group)))
+    most_edges = np.maximum.reduceat(crossed.edges, starts)
+    single = (size == 1) & (most_edges <= 1)
+    joined = (size == 2) & (most_edges == 1) & (np.abs(total - 1) < _SAME_EDGE)
+    joined &= np.add.reduceat(crossed.edges, starts) == 2
+    simple = (joined | single) & np.isfinite(np.maximum.reduceat(crossed.distance, starts))
+    # every crossing edge met by an opposite one: a seam or a corner where obstacles close
+    closed = np.linalg.norm(np.add.reduceat(crossed.edge_sum, starts, axis=0), axis=1) < _SEAM
+    simple &= joined | (background != OPEN) | ~beams.odd[head[1]]
+
+    # the part's share of the cosine-weighted beam, to first order
+    cosine = beams.directions @ normal
+    share = crossed.share * np.clip(1 + (crossed.offset @ normal) / cosine[crossed.beam], 0.0, 2.0)
+    total_before, total = total, np.add.reduceat(share, starts)
+    # two obstacles share the edge: nothing is left between them, to the last bit
+    meeting = joined[group]
+    share[meeting] /= total[group[meeting]]
+    left = np.where(joined, 0.0, np.clip(1.0 - total, 0.0, 1.0))
+    moment = np.add.reduceat(crossed.share[:, None] * crossed.offset, starts, axis=0)
+    towards = beams.directions[crossed.beam] + crossed.offset
+    left_towards = beams.directions[head[1]] - moment / np.maximum(1.0 - total_before, 1e-3)[:, None]
+
+    resample = ~simple
+    for order in _RAYS:
+        mine, groups = np.flatnonzero(resample[group]), np.flatnonzero(resample)
+        if not len(groups):
+            break
+        share[mine], towards[mine], left[groups], left_towards[groups] = _sample_parts(
+            crossed.take(mine), background[groups], order, planes, heights, normal, beams, obstacles
+        )
+        # where sky or ground shows in part, or may do so between the rays, more of them
+        resample &= ((left > 0) | ~closed) & (left < 1) & (background == OPEN)
+    seen[head] = SHARED
+    remains, lit = left > 1e-9, share > 1e-9
+    return View(
+        seen,
+        np.concatenate([crossed.row[lit], head[0][remains]]),
+        np.concatenate([crossed.beam[lit], head[1][remains]]),
+        np.concatenate([crossed.obstacle[lit], background[remains]]),
+        np.concatenate([share[lit], left[remains]]),
+        np.concatenate([towards[lit], left_towards[remains]]),
+        nearest,
+        possible,
+        heights,
+    )
+
+
+def _crossings(nearest, candidates, planes, heights, slopes, beams) -> _Crossed:
+    """Candidates that edges really cross, with the share that one edge alone leaves them."""
     row, beam, obstacle, sine = candidates
     reach = beams.reach[beam]
     pair, edge = np.nonzero(np.abs(sine) < reach[:, None])
@@ -201,107 +297,66 @@ def _settle_parts(seen, nearest, possible, candidates, planes, heights, slopes, 
     behind = np.isfinite(distance) & (distance > nearest[row, beam] * (1 + 1e-5))
     share, offset = np.ones(len(row)), np.zeros((len(row), 3))
     covered, moment = coverage(place, across[:, 0], across[:, 1])
-    share[pair] = covered
+    # exact for one edge, and for edges that cut off separate pieces
+    share -= np.bincount(pair, weights=1.0 - covered, minlength=len(row))
+    np.maximum(share, 0.0, out=share)
     offset[pair] = (moment / np.maximum(covered, 1e-12))[:, None] * normal
+    edge_sum = np.stack([np.bincount(pair, weights=normal[:, k], minlength=len(row)) for k in range(3)], axis=1)
     keep = np.flatnonzero(~outside & (heights[row, obstacle] != 0) & ~(behind & (edges < 2)))
-    order = keep[np.lexsort((distance[keep], row[keep] * len(beams.directions) + beam[keep]))]
-    row, beam, obstacle, distance, edges = row[order], beam[order], obstacle[order], distance[order], edges[order]
-    share, offset = share[order], offset[order]
-    if not len(row):
-        empty = np.zeros(0, np.int64)
-        return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
-    key = row * len(beams.directions) + beam
-    starts = np.flatnonzero(np.concatenate(([True], key[1:] != key[:-1])))
-    group = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(key))))
-    group_edges = np.add.reduceat(edges, starts)
-    group_share = np.add.reduceat(share, starts)
-    size = np.diff(np.append(starts, len(key)))
-    straight = np.isfinite(np.maximum.reduceat(distance, starts))
-    joined = (size == 2) & (group_edges == 2) & (np.abs(group_share - 1) < _SAME_EDGE)
-    simple = straight & (((size == 1) & (group_edges <= 1)) | joined) & (np.maximum.reduceat(edges, starts) <= 1)
-    # two obstacles share the edge: nothing is left between them, to the last bit
-    meeting = (joined & simple)[group]
-    share[meeting] /= group_share[group[meeting]]
-    group_share[joined & simple] = 1.0
-    complex_ = np.flatnonzero(~simple)
-    if len(complex_):
-        chosen = np.flatnonzero(~simple[group])
-        share[chosen], offset[chosen], rest, rest_offset = _sample_parts(
-            row[chosen],
-            beam[chosen],
-            obstacle[chosen],
-            sine[order[chosen]],
-            group[chosen],
-            seen,
-            planes,
-            heights,
-            obstacles.normals,
-            beams,
-        )
-    left = np.where(simple, 1.0 - group_share, 0.0)
-    background_offset = -np.add.reduceat(share[:, None] * offset, starts, axis=0) / np.maximum(left, 1e-12)[:, None]
-    if len(complex_):
-        left[complex_], background_offset[complex_] = rest, rest_offset
-    first_row, first_beam = row[starts], beam[starts]
-    behind_all = seen[first_row, first_beam]
-    seen[first_row, first_beam] = SHARED
-    remains = left > 1e-9
-    lit = share > 1e-9
-    part_row = np.concatenate([row[lit], first_row[remains]])
-    part_beam = np.concatenate([beam[lit], first_beam[remains]])
-    centre = np.concatenate([offset[lit], background_offset[remains]])
-    return View(
-        seen,
-        part_row,
-        part_beam,
-        np.concatenate([obstacle[lit], behind_all[remains]]),
-        np.concatenate([share[lit], left[remains]]),
-        beams.directions[part_beam] + centre,
-        nearest,
-        possible,
-        heights,
+    key = row[keep] * len(beams.directions) + beam[keep]
+    order = np.lexsort((distance[keep], key))
+    group = np.cumsum(np.diff(key[order], prepend=key[order[:1]]) > 0)
+    keep = keep[order]
+    return _Crossed(
+        row[keep],
+        beam[keep],
+        obstacle[keep],
+        sine[keep],
+        share[keep],
+        offset[keep],
+        distance[keep],
+        edges[keep],
+        edge_sum[keep],
+        group,
     )
 
 
-def _sample_parts(row, beam, obstacle, sine, group, seen, planes, heights, normals, beams):
-    """Shares of beams that several edges cross, by a grid of rays: each ray meets one obstacle, so nothing leaks."""
-    step = (np.arange(_SUBRAYS) + 0.5) * 2 / _SUBRAYS - 1
-    grid = np.stack(np.meshgrid(step, step, indexing="ij")).reshape(2, -1)
-    starts = np.flatnonzero(np.concatenate(([True], group[1:] != group[:-1])))
-    local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(group))))
-    head_row, head_beam = row[starts], beam[starts]
-    spans = beams.axes[head_beam] * beams.half_widths[head_beam][:, :, None]
-    mine = spans[local]
-    # sines and slopes are linear in the ray's place across the beam
-    tilt = np.matmul(planes[row, obstacle], mine.transpose(0, 2, 1))
-    inside = np.ones((len(row), grid.shape[1]), bool)
-    for edge in range(sine.shape[1]):
-        inside &= sine[:, edge, None] + tilt[:, edge] @ grid >= -_ON_EDGE
+def _sample_parts(
+    crossed: _Crossed, background, order: int, planes, heights, normal, beams: Beams, obstacles: Obstacles
+):
+    """Shares of beams that several edges cross, by a lattice of rays: each ray meets one obstacle, so nothing leaks."""
+    row, beam, obstacle, starts = crossed.row, crossed.beam, crossed.obstacle, crossed.starts
+    local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(row))))
+    rays = beams.rays(beam[starts], order)
+    weight = np.maximum(rays @ normal, 0.0)
+    weight /= np.maximum(weight.sum(axis=1, keepdims=True), 1e-300)
+    mine = rays[local]
+    inside = np.ones(mine.shape[:2], bool)
+    near = np.abs(crossed.sine) < 2 * beams.reach[beam][:, None]
+    for edge in range(near.shape[1]):
+        some = np.flatnonzero(near[:, edge])
+        if len(some):
+            sines = np.matmul(mine[some], planes[row[some], obstacle[some], edge][:, :, None])[:, :, 0]
+            inside[some] &= sines >= -_ON_EDGE
 
-    def distances(rows, beams_, obstacles_, across):
-        normal = normals[obstacles_]
-        slope = (
-            np.einsum("nc,nc->n", beams.directions[beams_], normal)[:, None]
-            + np.einsum("nac,nc->na", across, normal) @ grid
-        )
+    def distances(rows, obstacles_, towards):
+        slope = np.matmul(towards, obstacles.normals[obstacles_][:, :, None])[:, :, 0]
         with np.errstate(divide="ignore", invalid="ignore"):
             along = heights[rows, obstacles_][:, None] / slope
         return np.where(along > 0, along, np.inf)
 
-    distance = np.where(inside, distances(row, beam, obstacle, mine), np.inf)
-    background = seen[head_row, head_beam]
+    distance = np.where(inside, distances(row, obstacle, mine), np.inf)
     known = background >= 0
-    far = np.full((len(starts), grid.shape[1]), np.inf)
-    far[known] = distances(head_row[known], head_beam[known], background[known], spans[known])
+    far = np.full(weight.shape, np.inf)
+    far[known] = distances(row[starts][known], background[known], rays[known])
     best = np.minimum.reduceat(distance, starts, axis=0)
     hit = np.isfinite(distance) & (distance <= best[local]) & (distance < far[local] * (1 - 1e-9))
     winners = np.add.reduceat(hit.astype(float), starts, axis=0)
-    hit = hit / np.maximum(winners[local], 1.0)
-    free = (winners == 0).astype(float)
+    hit = hit * weight[local] / np.maximum(winners[local], 1.0)
+    free = np.where(winners == 0, weight, 0.0)
 
-    def share_and_offset(weight, across):
-        total = weight.sum(axis=1)
-        place = weight @ grid.T / np.maximum(total, 1e-12)[:, None]
-        return total / grid.shape[1], np.einsum("na,nac->nc", place, across)
+    def share_and_centre(part, towards):
+        share = part.sum(axis=1)
+        return share, np.matmul(part[:, None], towards)[:, 0] / np.maximum(share, 1e-300)[:, None]
 
-    return *share_and_offset(hit, mine), *share_and_offset(free, spans)
+    return *share_and_centre(hit, mine), *share_and_centre(free, rays)
