@@ -21,14 +21,17 @@ OPEN = -1
 SHARED = -2
 """A parcel that an edge crosses: see the view's parts."""
 
-_RAYS = (7, 11)
-"""Order of the lattice of rays in a beam that several edges cross: 13 rays, then 89 where sky shows in part."""
+_RAYS = 11
+"""Order of the lattice of rays, 89 of them, in a beam that several edges cross and where sky may show."""
 
 _ON_EDGE = 1e-6
 """Rays this close to an edge [rad] count as inside, so that none slips between two obstacles that share it."""
 
 _SEAM = 1e-4
 """Edges whose planes through the receiver are this close [rad], with an obstacle on either side, leave no opening."""
+
+_ALIGNED = 0.99
+"""Cosine between edges that count as parallel within one beam."""
 
 _SAME_EDGE = 1e-4
 """Shares of two obstacles at one edge that sum to 1 this closely belong to obstacles that share the edge."""
@@ -227,41 +230,40 @@ def _settle_parts(
         empty = np.zeros(0, np.int64)
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
     starts, group = crossed.starts, crossed.group
+    aligned = _subtract_aligned(crossed)
     head = crossed.row[starts], crossed.beam[starts]
     background = seen[head]
     total = np.add.reduceat(crossed.share, starts)
     size = np.diff(np.append(starts, len(group)))
     most_edges = np.maximum.reduceat(crossed.edges, starts)
-    single = (size == 1) & (most_edges <= 1)
+    lone = (size == 1) & (most_edges <= 1)
     joined = (size == 2) & (most_edges == 1) & (np.abs(total - 1) < _SAME_EDGE)
     joined &= np.add.reduceat(crossed.edges, starts) == 2
-    simple = (joined | single) & np.isfinite(np.maximum.reduceat(crossed.distance, starts))
+    simple = (joined | lone | aligned) & np.isfinite(np.maximum.reduceat(crossed.distance, starts))
     # every crossing edge met by an opposite one: a seam or a corner where obstacles close
     closed = np.linalg.norm(np.add.reduceat(crossed.edge_sum, starts, axis=0), axis=1) < _SEAM
     simple &= joined | (background != OPEN) | ~beams.odd[head[1]]
 
+    # several edges, but no opening: shares by each edge alone, brought to a sum of 1
+    filled = ~simple & (total > 0) & (closed | (background != OPEN))
     # the part's share of the cosine-weighted beam, to first order
     cosine = beams.directions @ normal
     share = crossed.share * np.clip(1 + (crossed.offset @ normal) / cosine[crossed.beam], 0.0, 2.0)
-    total_before, total = total, np.add.reduceat(share, starts)
+    weighted = np.add.reduceat(share, starts)
     # two obstacles share the edge: nothing is left between them, to the last bit
-    meeting = joined[group]
-    share[meeting] /= total[group[meeting]]
-    left = np.where(joined, 0.0, np.clip(1.0 - total, 0.0, 1.0))
+    whole = joined | (filled & ((background == OPEN) | (weighted > 1)))
+    share /= np.where(whole, weighted, 1.0)[group]
+    left = np.where(whole, 0.0, np.clip(1.0 - weighted, 0.0, 1.0))
     moment = np.add.reduceat(crossed.share[:, None] * crossed.offset, starts, axis=0)
     towards = beams.directions[crossed.beam] + crossed.offset
-    left_towards = beams.directions[head[1]] - moment / np.maximum(1.0 - total_before, 1e-3)[:, None]
+    left_towards = beams.directions[head[1]] - moment / np.maximum(1.0 - total, 1e-3)[:, None]
 
-    resample = ~simple
-    for order in _RAYS:
-        mine, groups = np.flatnonzero(resample[group]), np.flatnonzero(resample)
-        if not len(groups):
-            break
+    open_ = ~simple & ~filled
+    mine, groups = np.flatnonzero(open_[group]), np.flatnonzero(open_)
+    if len(groups):
         share[mine], towards[mine], left[groups], left_towards[groups] = _sample_parts(
-            crossed.take(mine), background[groups], order, planes, heights, normal, beams, obstacles
+            crossed.take(mine), background[groups], planes, heights, normal, beams, obstacles
         )
-        # where sky or ground shows in part, or may do so between the rays, more of them
-        resample &= ((left > 0) | ~closed) & (left < 1) & (background == OPEN)
     seen[head] = SHARED
     remains, lit = left > 1e-9, share > 1e-9
     return View(
@@ -275,6 +277,35 @@ def _settle_parts(
         possible,
         heights,
     )
+
+
+def _subtract_aligned(crossed: _Crossed) -> np.ndarray:
+    """Settle beams that two obstacles cross with one edge each, almost parallel: slats, shelves, slits.
+
+    Where both lie on the same side, the farther one shows only as far as it reaches beyond the nearer; its share is lowered
+    accordingly, in place.
+
+    Returns
+    -------
+    (groups,) bool
+        Beams whose shares are now exact.
+    """
+    starts = crossed.starts
+    size = np.diff(np.append(starts, len(crossed.group)))
+    front = np.minimum(starts, len(crossed.row) - 2) if len(crossed.row) > 1 else starts
+    back = front + (len(crossed.row) > 1)
+    pair = (size == 2) & (crossed.edges[front] == 1) & (crossed.edges[back] == 1)
+    alike = np.einsum("gc,gc->g", crossed.edge_sum[front], crossed.edge_sum[back])
+    nested = np.flatnonzero(pair & (alike > _ALIGNED))
+    a, b = front[nested], back[nested]
+    covered = np.maximum(crossed.share[b] - crossed.share[a], 0.0)
+    moment = crossed.share[b, None] * crossed.offset[b] - crossed.share[a, None] * crossed.offset[a]
+    crossed.offset[b] = np.where(covered[:, None] > 1e-6, moment / np.maximum(covered, 1e-6)[:, None], 0.0)
+    crossed.share[b] = covered
+    opposed = pair & (alike < -_ALIGNED)
+    a, b = front[opposed], back[opposed]
+    crossed.share[b] = np.minimum(crossed.share[b], 1.0 - crossed.share[a])
+    return pair & (np.abs(alike) > _ALIGNED)
 
 
 def _crossings(nearest, candidates, planes, heights, slopes, beams) -> _Crossed:
@@ -321,42 +352,45 @@ def _crossings(nearest, candidates, planes, heights, slopes, beams) -> _Crossed:
     )
 
 
-def _sample_parts(
-    crossed: _Crossed, background, order: int, planes, heights, normal, beams: Beams, obstacles: Obstacles
-):
+def _sample_parts(crossed: _Crossed, background, planes, heights, normal, beams: Beams, obstacles: Obstacles):
     """Shares of beams that several edges cross, by a lattice of rays: each ray meets one obstacle, so nothing leaks."""
     row, beam, obstacle, starts = crossed.row, crossed.beam, crossed.obstacle, crossed.starts
     local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(row))))
-    rays = beams.rays(beam[starts], order)
-    weight = np.maximum(rays @ normal, 0.0)
-    weight /= np.maximum(weight.sum(axis=1, keepdims=True), 1e-300)
+    single = np.float32
+    rays = beams.rays(beam[starts], _RAYS).astype(single)
+    weight = np.maximum(rays @ normal.astype(single), 0.0)
+    weight /= np.maximum(weight.sum(axis=1, keepdims=True), single(1e-30))
     mine = rays[local]
     inside = np.ones(mine.shape[:2], bool)
     near = np.abs(crossed.sine) < 2 * beams.reach[beam][:, None]
     for edge in range(near.shape[1]):
         some = np.flatnonzero(near[:, edge])
         if len(some):
-            sines = np.matmul(mine[some], planes[row[some], obstacle[some], edge][:, :, None])[:, :, 0]
-            inside[some] &= sines >= -_ON_EDGE
+            across = planes[row[some], obstacle[some], edge].astype(single)
+            inside[some] &= np.matmul(mine[some], across[:, :, None])[:, :, 0] >= -_ON_EDGE
 
     def distances(rows, obstacles_, towards):
-        slope = np.matmul(towards, obstacles.normals[obstacles_][:, :, None])[:, :, 0]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            along = heights[rows, obstacles_][:, None] / slope
-        return np.where(along > 0, along, np.inf)
+        slope = np.matmul(towards, obstacles.normals[obstacles_].astype(single)[:, :, None])[:, :, 0]
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            along = heights[rows, obstacles_].astype(single)[:, None] / slope
+        along[~(along > 0)] = np.inf
+        return along
 
-    distance = np.where(inside, distances(row, obstacle, mine), np.inf)
+    distance = distances(row, obstacle, mine)
+    distance[~inside] = np.inf
     known = background >= 0
-    far = np.full(weight.shape, np.inf)
-    far[known] = distances(row[starts][known], background[known], rays[known])
     best = np.minimum.reduceat(distance, starts, axis=0)
-    hit = np.isfinite(distance) & (distance <= best[local]) & (distance < far[local] * (1 - 1e-9))
-    winners = np.add.reduceat(hit.astype(float), starts, axis=0)
-    hit = hit * weight[local] / np.maximum(winners[local], 1.0)
-    free = np.where(winners == 0, weight, 0.0)
+    far = np.full(weight.shape, np.inf, single)
+    if known.any():
+        far[known] = distances(row[starts][known], background[known], rays[known])
+    limit = np.minimum(best, far * single(1 - 1e-6))
+    hit = (distance <= limit[local]) & (distance < np.inf)
+    winners = np.add.reduceat(hit, starts, axis=0, dtype=np.int32)
+    hit = hit * weight[local] / np.maximum(winners, 1).astype(single)[local]
+    free = np.where(winners == 0, weight, single(0))
 
     def share_and_centre(part, towards):
         share = part.sum(axis=1)
-        return share, np.matmul(part[:, None], towards)[:, 0] / np.maximum(share, 1e-300)[:, None]
+        return share, np.matmul(part[:, None], towards)[:, 0] / np.maximum(share, single(1e-30))[:, None]
 
     return *share_and_centre(hit, mine), *share_and_centre(free, rays)
