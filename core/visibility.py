@@ -21,8 +21,8 @@ OPEN = -1
 SHARED = -2
 """A parcel that an edge crosses: see the view's parts."""
 
-_RAYS = 11
-"""Order of the lattice of rays, 89 of them, in a beam that several edges cross and where sky may show."""
+_RAYS = (8, 11)
+"""Order of the lattice of rays in a beam that several edges cross: 21 rays, then 89 where sky shows in part."""
 
 _ON_EDGE = 1e-6
 """Rays this close to an edge [rad] count as inside, so that none slips between two obstacles that share it."""
@@ -259,11 +259,14 @@ def _settle_parts(
     left_towards = beams.directions[head[1]] - moment / np.maximum(1.0 - total, 1e-3)[:, None]
 
     open_ = ~simple & ~filled
-    mine, groups = np.flatnonzero(open_[group]), np.flatnonzero(open_)
-    if len(groups):
+    for order in _RAYS:
+        mine, groups = np.flatnonzero(open_[group]), np.flatnonzero(open_)
+        if not len(groups):
+            break
         share[mine], towards[mine], left[groups], left_towards[groups] = _sample_parts(
-            crossed.take(mine), background[groups], planes, heights, normal, beams, obstacles
+            crossed.take(mine), background[groups], order, planes, heights, normal, beams, obstacles
         )
+        open_ &= (left > 0) & (left < 1)
     seen[head] = SHARED
     remains, lit = left > 1e-9, share > 1e-9
     return View(
@@ -282,8 +285,8 @@ def _settle_parts(
 def _subtract_aligned(crossed: _Crossed) -> np.ndarray:
     """Settle beams that two obstacles cross with one edge each, almost parallel: slats, shelves, slits.
 
-    Where both lie on the same side, the farther one shows only as far as it reaches beyond the nearer; its share is lowered
-    accordingly, in place.
+    Where both lie on the same side, the farther one shows only as far as it reaches beyond the nearer; its share is
+    lowered accordingly, in place.
 
     Returns
     -------
@@ -352,12 +355,14 @@ def _crossings(nearest, candidates, planes, heights, slopes, beams) -> _Crossed:
     )
 
 
-def _sample_parts(crossed: _Crossed, background, planes, heights, normal, beams: Beams, obstacles: Obstacles):
+def _sample_parts(
+    crossed: _Crossed, background, order: int, planes, heights, normal, beams: Beams, obstacles: Obstacles
+):
     """Shares of beams that several edges cross, by a lattice of rays: each ray meets one obstacle, so nothing leaks."""
     row, beam, obstacle, starts = crossed.row, crossed.beam, crossed.obstacle, crossed.starts
     local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(row))))
     single = np.float32
-    rays = beams.rays(beam[starts], _RAYS).astype(single)
+    rays = beams.rays(beam[starts], order).astype(single)
     weight = np.maximum(rays @ normal.astype(single), 0.0)
     weight /= np.maximum(weight.sum(axis=1, keepdims=True), single(1e-30))
     mine = rays[local]
