@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from luzespecular import polygons
 from luzespecular.globe import Globe
-from luzespecular.projection import Beams, HalfSpace, obstacles_within
-from luzespecular.visibility import OPEN, look
+from luzespecular.materials import Material
+from luzespecular.specular import ChainLimits, GroupSight, Outlines
+from luzespecular.visibility import OPEN
 
 GLOBES = {bands: Globe(bands) for bands in (24, 60)}
 TOLERANCE = 1e-9
@@ -19,22 +20,22 @@ TOLERANCE = 1e-9
 
 def seen_shares(points, normal, outlines, bands=60):
     """(r, outlines + 1): cosine-weighted share that each point sees of each outline, and last of nothing."""
-    outlines, _ = polygons.pad([np.asarray(o, float) for o in outlines])
-    normals = polygons.newell_normal(outlines)
+    padded, _ = polygons.pad([np.asarray(o, float) for o in outlines])
+    normals = polygons.newell_normal(padded)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    offsets = np.einsum("oc,oc->o", normals, outlines[:, 0])
+    offsets = np.einsum("oc,oc->o", normals, padded[:, 0])
+    count = len(padded)
+    scene = Outlines(padded, normals, offsets, [Material()] * count, np.zeros(count, bool), TOLERANCE)
     points = np.atleast_2d(points).astype(float)
     half = GLOBES[bands].hemisphere(normal)
-    beams = Beams.of(half)
-    within = obstacles_within(outlines, normals, offsets, [HalfSpace(half.normal, points[0] @ half.normal)], TOLERANCE)
-    view = look(points, beams, within, TOLERANCE)
-    shares = np.zeros((len(points), len(outlines) + 1))
-    number = np.append(within.outlines, len(outlines))  # OPEN is -1, the last
-    for row in range(len(points)):
-        whole = view.seen[row] >= OPEN
-        np.add.at(shares[row], number[view.seen[row, whole]], half.weights[whole])
-    tilt = (view.part_direction @ half.normal) / (beams.directions @ half.normal)[view.part_beam]
-    np.add.at(shares, (view.part_row, number[view.part_seen]), half.weights[view.part_beam] * view.part_share * tilt)
+    sightings, _ = GroupSight(scene, half, float(points[0] @ half.normal), ChainLimits()).sightings(points)
+    (sight,) = sightings
+    view = sight.view
+    shares = np.zeros((len(points), count + 1))
+    number = np.append(sight.obstacles.outlines, count)  # OPEN is -1, the last
+    row, beam = np.nonzero(view.seen >= OPEN)
+    np.add.at(shares, (row, number[view.seen[row, beam]]), sight.weights[row, beam])
+    np.add.at(shares, (view.part_row, number[view.part_seen]), sight.part_weights())
     return shares
 
 
@@ -172,11 +173,11 @@ def with_hole(size, centre=(2.0, 1.5), height=2.5):
     ], np.array([[x - h, y + h, height], [x + h, y + h, height], [x + h, y - h, height], [x - h, y - h, height]])
 
 
-@pytest.mark.parametrize(("size", "rms"), [(1.0, 0.004), (0.5, 0.012), (0.3, 0.03)])
+@pytest.mark.parametrize(("size", "rms"), [(1.0, 0.002), (0.5, 0.004), (0.3, 0.01), (0.1, 0.06)])
 def test_a_hole_in_the_ceiling(size, rms):
     """A square hole seen from all over a floor 2.5 m below; parcels are 0.13 m wide there.
 
-    What coverage reaches: its error grows as the hole shrinks to a parcel. Smaller openings need a rule of their own.
+    The error grows as the hole shrinks to a parcel and below; light on the whole is right all the same.
     """
     around, hole = with_hole(size)
     points = np.random.default_rng(1).uniform([0.1, 0.1, 0], [3.9, 2.9, 0], (40, 3))
@@ -194,7 +195,7 @@ def test_the_nearest_of_two_prevails():
     alone = seen_shares([[0.4, 0.3, 0]], [0, 0, 1], [near])[0, 0]
     for outlines, first in (([near, far], 0), ([far, near], 1)):
         shares = seen_shares([[0.4, 0.3, 0]], [0, 0, 1], outlines)[0]
-        assert shares[first] == pytest.approx(alone, rel=1e-6)
+        assert shares[first] == pytest.approx(alone, rel=1e-3)
         np.testing.assert_allclose(shares, by_rays((0.4, 0.3, 0), (0, 0, 1), outlines), atol=8e-4)
 
 
