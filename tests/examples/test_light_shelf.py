@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-luz = pytest.importorskip("luzespecular")
+import luzespecular as luz
 
 NOON = math.radians(90 - abs(-27.0 - 23.44))  # the Sun's altitude at solar noon
 EDGE = 0.005  # m, how near to its closed-form edge a patch is probed
