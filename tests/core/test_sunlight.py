@@ -298,6 +298,17 @@ def test_lit_share_of_all_some_and_none():
     np.testing.assert_allclose(lit_share(triangles, square), [1, 0, 0.75])
 
 
+def test_lit_share_of_polygons_with_doubled_corners():
+    """Clipping leaves corners that differ by rounding alone; the edge between them points anywhere, bounds nothing."""
+    triangles = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0.0]], [[3, 0, 0], [4, 0, 0], [3, 1, 0.0]]])
+    square = np.array([[-1, -1, 0], [2, -1, 0], [2, 2, 0], [-1, 2, 0.0]])
+    rng = np.random.default_rng(0)
+    for _ in range(40):
+        doubled = np.repeat(square, 2, axis=0)
+        doubled[1::2, :2] += rng.integers(-2, 3, (4, 2)) * 2.2e-16
+        np.testing.assert_allclose(lit_share(triangles, doubled), [1, 0], atol=1e-9)
+
+
 def by_noon(light_shelf, variant):
     transfer = prepare_coarse(light_shelf.scene(variant), max_area=0.02, bands=4)
     return transfer.solve(light_shelf.daylight(12.0, sky=None), cycles=0)
