@@ -179,14 +179,16 @@ class Fracture:
         return mean / area
 
 
-def fracture(planes: Planes, cut, two_sided, max_area: float | None) -> Fracture:
+def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -> Fracture:
     """Cut the scene's planes into faces and elements.
 
     Parameters
     ----------
     planes : Planes
     cut : (surfaces,) bool
-        Surfaces that reflect or emit diffusely. Others are never cut for their size alone.
+        Surfaces to cut into faces; others are never cut for their size alone.
+    reflects : (surfaces,) bool
+        Surfaces that reflect diffusely: their elements are kept small.
     two_sided : (surfaces,) bool
     max_area : float or None
         Largest area of a face [m²]; None = chosen for the scene; inf = faces as given, only triangulated.
@@ -203,9 +205,8 @@ def fracture(planes: Planes, cut, two_sided, max_area: float | None) -> Fracture
     faces = cut_pieces(planes.given, planes.given_counts, np.where(is_cut, limit if total else math.inf, math.inf))
     face_surface = surface[faces.parent]
     surface_area = np.bincount(surface, weights=piece_areas, minlength=len(planes.surfaces))
-    fine = np.where(
-        np.asarray(cut), total / FEWEST_ELEMENTS if total else math.inf, surface_area / ELEMENTS_PER_PLAIN_SURFACE
-    )
+    reflecting = surface_area[np.asarray(reflects)].sum()
+    fine = np.where(np.asarray(reflects), reflecting / FEWEST_ELEMENTS, surface_area / ELEMENTS_PER_PLAIN_SURFACE)
     parts = halve(Triangles(faces.vertices, np.arange(len(faces.parent))), fine[face_surface])
     sheet = planes.given_sheet[faces.parent]
     back_of = np.flatnonzero(np.asarray(two_sided)[face_surface])

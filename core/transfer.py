@@ -193,16 +193,20 @@ def prepare(
 def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | None) -> Geometry:
     """Cut planes into faces, elements and patches, and list the outlines with their materials."""
     surfaces = list(scene.surfaces.values())
-    diffuse = np.array([s.material.diffuse_reflectance > 0 or s.material.exitance > 0 for s in surfaces])
+    reflects = np.array([s.material.diffuse_reflectance > 0 for s in surfaces])
+    emits = np.array([s.material.exitance > 0 for s in surfaces])
+    # light that a black luminous surface receives goes nowhere: cut it only where the user says how fine
+    cut = reflects | (emits & (max_area is not None))
     two_sided = np.array([s.two_sided for s in surfaces])
-    cuts = fracture(planes, diffuse, two_sided, max_area)
+    cuts = fracture(planes, cut, reflects, two_sided, max_area)
     points = cuts.elements.mean(axis=1)
     fronts = len(planes.sheet_surface)
     surface = planes.sheet_surface[cuts.element_sheet % fronts]
     normals = (
         planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
     )
-    patches = make_patches(planes, cuts.elements, cuts.element_sheet, diffuse[surface], cuts.element_areas, PATCHES)
+    active = (reflects | emits)[surface]
+    patches = make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, PATCHES)
     outline_surface = planes.sheet_surface[planes.outline_sheet]
     outline_normals = planes.sheet_normal[planes.outline_sheet]
     outlines = Outlines(

@@ -30,6 +30,9 @@ _ON_EDGE = 1e-6
 _SEAM = 1e-4
 """Edges whose planes through the receiver are this close [rad], with an obstacle on either side, leave no opening."""
 
+_WELL_BEHIND = 1.05
+"""How much farther than a wholly seen obstacle a corner must be to be hidden without a closer look."""
+
 _ALIGNED = 0.99
 """Cosine between edges that count as parallel within one beam."""
 
@@ -143,7 +146,7 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
     candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
     return _settle_parts(
-        seen, nearest, possible, candidates, planes, heights, slopes, np.asarray(normal, float), beams, obstacles
+        seen, nearest, possible, candidates, planes, heights, np.asarray(normal, float), beams, obstacles
     )
 
 
@@ -223,9 +226,9 @@ class _Crossed:
 
 
 def _settle_parts(
-    seen, nearest, possible, candidates, planes, heights, slopes, normal, beams: Beams, obstacles: Obstacles
+    seen, nearest, possible, candidates, planes, heights, normal, beams: Beams, obstacles: Obstacles
 ) -> View:
-    crossed = _crossings(nearest, candidates, planes, heights, slopes, beams)
+    crossed = _crossings(seen, candidates, planes, heights, beams, obstacles)
     if not len(crossed.row):
         empty = np.zeros(0, np.int64)
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
@@ -239,19 +242,20 @@ def _settle_parts(
     lone = (size == 1) & (most_edges <= 1)
     joined = (size == 2) & (most_edges == 1) & (np.abs(total - 1) < _SAME_EDGE)
     joined &= np.add.reduceat(crossed.edges, starts) == 2
-    simple = (joined | lone | aligned) & np.isfinite(np.maximum.reduceat(crossed.distance, starts))
+    ahead = np.isfinite(np.maximum.reduceat(crossed.distance, starts))
+    simple = (joined | lone | aligned) & ahead
     # every crossing edge met by an opposite one: a seam or a corner where obstacles close
     closed = np.linalg.norm(np.add.reduceat(crossed.edge_sum, starts, axis=0), axis=1) < _SEAM
     simple &= joined | (background != OPEN) | ~beams.odd[head[1]]
 
     # several edges, but no opening: shares by each edge alone, brought to a sum of 1
-    filled = ~simple & (total > 0) & (closed | (background != OPEN))
+    filled = ~simple & (total > 1e-9) & closed & (background == OPEN)
     # the part's share of the cosine-weighted beam, to first order
     cosine = beams.directions @ normal
     share = crossed.share * np.clip(1 + (crossed.offset @ normal) / cosine[crossed.beam], 0.0, 2.0)
     weighted = np.add.reduceat(share, starts)
     # two obstacles share the edge: nothing is left between them, to the last bit
-    whole = joined | (filled & ((background == OPEN) | (weighted > 1)))
+    whole = joined | filled
     share /= np.where(whole, weighted, 1.0)[group]
     left = np.where(whole, 0.0, np.clip(1.0 - weighted, 0.0, 1.0))
     moment = np.add.reduceat(crossed.share[:, None] * crossed.offset, starts, axis=0)
@@ -266,7 +270,7 @@ def _settle_parts(
         share[mine], towards[mine], left[groups], left_towards[groups] = _sample_parts(
             crossed.take(mine), background[groups], order, planes, heights, normal, beams, obstacles
         )
-        open_ &= (left > 0) & (left < 1)
+        open_ &= (left > 0) & (left < 1) & (background == OPEN)
     seen[head] = SHARED
     remains, lit = left > 1e-9, share > 1e-9
     return View(
@@ -280,6 +284,14 @@ def _settle_parts(
         possible,
         heights,
     )
+
+
+def _distance_along(heights, obstacles: Obstacles, row, obstacle, towards) -> np.ndarray:
+    """(n,) float: distance from receivers to obstacles' planes along directions; inf where these lead away."""
+    slope = np.einsum("nc,nc->n", towards, obstacles.normals[obstacle])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = heights[row, obstacle] / slope
+    return np.where(along > 0, along, np.inf)
 
 
 def _subtract_aligned(crossed: _Crossed) -> np.ndarray:
@@ -311,7 +323,7 @@ def _subtract_aligned(crossed: _Crossed) -> np.ndarray:
     return pair & (np.abs(alike) > _ALIGNED)
 
 
-def _crossings(nearest, candidates, planes, heights, slopes, beams) -> _Crossed:
+def _crossings(seen, candidates, planes, heights, beams: Beams, obstacles: Obstacles) -> _Crossed:
     """Candidates that edges really cross, with the share that one edge alone leaves them."""
     row, beam, obstacle, sine = candidates
     reach = beams.reach[beam]
@@ -325,18 +337,20 @@ def _crossings(nearest, candidates, planes, heights, slopes, beams) -> _Crossed:
     crossing = np.abs(place) < support
     pair, normal, across, place = pair[crossing], normal[crossing], across[crossing], place[crossing]
     edges = np.bincount(pair, minlength=len(row))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        distance = heights[row, obstacle] / slopes[beam, obstacle]
-    distance = np.where(distance > 0, distance, np.inf)
-    behind = np.isfinite(distance) & (distance > nearest[row, beam] * (1 + 1e-5))
-    share, offset = np.ones(len(row)), np.zeros((len(row), 3))
+    offset = np.zeros((len(row), 3))
     covered, moment = coverage(place, across[:, 0], across[:, 1])
-    # exact for one edge, and for edges that cut off separate pieces
-    share -= np.bincount(pair, weights=1.0 - covered, minlength=len(row))
-    np.maximum(share, 0.0, out=share)
+    # exact for one edge, and near enough where edges meet at a corner
+    share = np.exp(np.bincount(pair, weights=np.log(np.maximum(covered, 1e-30)), minlength=len(row)))
     offset[pair] = (moment / np.maximum(covered, 1e-12))[:, None] * normal
+    # what is nearer shows at the part's own centre: an edge may stand on the obstacle behind it
+    towards = beams.directions[beam] + offset
+    distance = _distance_along(heights, obstacles, row, obstacle, towards)
+    far = np.full(len(row), np.inf)
+    known = np.flatnonzero(seen[row, beam] >= 0)
+    far[known] = _distance_along(heights, obstacles, row[known], seen[row[known], beam[known]], towards[known])
+    behind = np.isfinite(distance) & (distance >= np.where(edges < 2, far, _WELL_BEHIND * far))
     edge_sum = np.stack([np.bincount(pair, weights=normal[:, k], minlength=len(row)) for k in range(3)], axis=1)
-    keep = np.flatnonzero(~outside & (heights[row, obstacle] != 0) & ~(behind & (edges < 2)))
+    keep = np.flatnonzero(~outside & (heights[row, obstacle] != 0) & ~behind)
     key = row[keep] * len(beams.directions) + beam[keep]
     order = np.lexsort((distance[keep], key))
     group = np.cumsum(np.diff(key[order], prepend=key[order[:1]]) > 0)

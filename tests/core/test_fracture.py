@@ -20,7 +20,7 @@ MIRROR = luz.Material(specular_reflectance=0.9)
 def cuts_of(scene, max_area):
     surfaces = list(scene.surfaces.values())
     cut = [s.material.diffuse_reflectance > 0 or s.material.exitance > 0 for s in surfaces]
-    return fracture(find_planes(scene), cut, [s.two_sided for s in surfaces], max_area)
+    return fracture(find_planes(scene), cut, cut, [s.two_sided for s in surfaces], max_area)
 
 
 def count(cuts, surface):
