@@ -8,7 +8,7 @@ import pytest
 import luzespecular as luz
 
 NOON = math.radians(90 - abs(-27.0 - 23.44))  # the Sun's altitude at solar noon
-EDGE = 0.005  # m, how near to its closed-form edge a patch is probed
+EDGE = 0.001  # m, how near to its closed-form edge a patch is probed
 
 
 @pytest.fixture(scope="module")
