@@ -146,7 +146,7 @@ def test_convex_parts_overlap_nowhere(loop, x, y):
 
 @given(simple_loops(), VECTORS, NUMBERS)
 def test_clipping_shares_out_the_area(loop, normal, offset):
-    assume(np.linalg.norm(normal) > 0.1)
+    assume(np.linalg.norm(normal[:2]) > 0.05)  # a polygon within the cutting plane belongs to both sides
     parts = [np.c_[part, np.zeros(len(part))] for part in polygons.convex_parts(loop, 1e-9)]
     batch, _ = polygons.pad(parts)
     one, other = polygons.clip(batch, normal, offset), polygons.clip(batch, -normal, -offset)

@@ -46,6 +46,13 @@ def test_a_mirror_wall_shows_the_sky_in_front_of_it():
     assert at(transfer, [0, -1, 0], NORTH, CLEAR) == pytest.approx(0.7 * at(open_, [0, 0, 0], SOUTH, CLEAR), rel=2e-3)
 
 
+@pytest.mark.parametrize(("turned", "two_sided", "share"), [(1, False, 0.7), (-1, False, 0), (-1, True, 0.7)])
+def test_a_mirror_reflects_from_its_front_or_from_both_sides(turned, two_sided, share):
+    scene = luz.Scene()
+    scene.add("mirror", level(1e5)["level"][::turned], mirror(0.7), two_sided=two_sided)
+    assert at(prepare_coarse(scene), [0, 0, 1], DOWN) == pytest.approx(share * np.pi * 1000, rel=5e-3, abs=1e-6)
+
+
 def test_components_keep_direct_and_mirrored_sky_apart():
     scene = luz.Scene()
     scene.add("mirror", level(1e5)["level"], mirror(0.5))
