@@ -13,8 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import polygons
-from .projection import HalfSpace, reflect_points
+from .materials import Material
+from .projection import HalfSpace, reflect, reflect_points
 from .specular import DEEPEST_CHAIN, Outlines
+
+_FAINT = 1e-2
+"""Mirrored images this much fainter than the cut-off, by the source's share in all flux, are not looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,24 +45,34 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Screen:
-    """An outline between the source and the receivers, in the receivers' mirrored space.
+    """Something in the way, in the receivers' mirrored space.
 
     Attributes
     ----------
     polygon : (w, 3) float
         What of the outline lies in between.
     outline : int
-    aperture : bool
-        A mirror that the light must come through, instead of something in the way.
     """
 
     polygon: np.ndarray
     outline: int
-    aperture: bool
 
     def reflected(self, normal, offset: float) -> Screen:
         """Its image in a mirror."""
-        return Screen(reflect_points(self.polygon, normal, offset), self.outline, self.aperture)
+        return Screen(reflect_points(self.polygon, normal, offset), self.outline)
+
+
+@dataclass(frozen=True, eq=False)
+class Mirrored:
+    """A mirror on the way: its material, and its normal in the receivers' mirrored space."""
+
+    material: Material
+    normal: np.ndarray
+
+    def share(self, directions) -> np.ndarray:
+        """(n,) float: specular reflectance for light along directions ``(n, 3)`` of any length."""
+        length = np.maximum(np.linalg.norm(directions, axis=1), 1e-300)
+        return self.material.specular_at((directions @ self.normal) / length)
 
 
 def gather_sources(
@@ -93,10 +107,9 @@ def gather_sources(
     horizon = HalfSpace(np.asarray(normal, float), float(np.asarray(normal) @ points[0]))
     lit = _above(outlines.vertices, horizon, outlines.tolerance)
     mirrors = [int(o) for o in np.flatnonzero(lit) if outlines.materials[o].is_specular]
-    for source in sources:
-        view = _SourceView(outlines, source, mirrors, cutoff, checkpoint)
-        total += view.illuminance(_Leg(np.asarray(points, float), horizon, (), 1.0, None, 0))
-    return total
+    flux = np.array([source.exitance * float(polygons.areas(source.polygon)) for source in sources])
+    view = _SourceView(outlines, sources, flux / flux.sum(), mirrors, cutoff, checkpoint)
+    return view.illuminance(_Leg(np.asarray(points, float), horizon, None, (), (), 1.0, None, 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +121,9 @@ class _Leg:
     points : (r, 3) float
     horizon : HalfSpace
         Above their own plane, mirrored likewise.
+    window : (r, v, 3) float or None
+        What each receiver sees of the last mirror through all before it, relative to the receiver.
+    mirrors : tuple of Mirrored
     screens : tuple of Screen
         What lies on the way so far.
     throughput : float
@@ -120,6 +136,8 @@ class _Leg:
 
     points: np.ndarray
     horizon: HalfSpace
+    window: np.ndarray | None
+    mirrors: tuple[Mirrored, ...]
     screens: tuple[Screen, ...]
     throughput: float
     beyond: HalfSpace | None
@@ -137,35 +155,59 @@ class _Leg:
             part = polygons.clip(part, half.normal, half.offset)
         return part
 
+    def seen(self, rows, polygon) -> tuple[np.ndarray, np.ndarray]:
+        """Rows that see some of a polygon through the window, and what they see, relative to them."""
+        if not len(rows):
+            return rows, np.zeros((0, 1, 3))
+        shape = polygon[None] - self.points[rows][:, None]
+        if self.window is not None:
+            shape = within_cones(shape, self.window[rows])
+        some = _has_area(shape)
+        return rows[some], shape[some]
+
 
 @dataclass(frozen=True, eq=False)
 class _SourceView:
-    """One source, as receivers of one plane see it straight and in mirrors."""
+    """Sources as receivers of one plane see them, straight and in mirrors.
+
+    Attributes
+    ----------
+    flux : (s,) float
+        Share of each source in the flux of all.
+    """
 
     outlines: Outlines
-    source: Source
+    sources: list[Source]
+    flux: np.ndarray
     mirrors: list[int]
     cutoff: float
     checkpoint: Callable[[], None]
 
     def illuminance(self, leg: _Leg) -> np.ndarray:
         """(r,) float: light that comes past the leg's screens, and by any further mirror [lx]."""
-        self.checkpoint()
-        outlines, tolerance = self.outlines, self.outlines.tolerance
         total = np.zeros(len(leg.points))
-        plane, at = self.source.plane
-        visible = leg.clipped(self.source.polygon)
-        rows = np.flatnonzero(leg.points @ plane - at > tolerance)
-        if len(rows) and polygons.areas(visible)[0] > tolerance**2:
-            limits = [HalfSpace(plane, at), *leg.limits]
-            between = _between(outlines, leg.points[rows], visible[0], limits)
-            screens = [*leg.screens, *(Screen(polygon, o, False) for o, polygon in between)]
-            factor = _seen_factor(outlines, visible[0], leg.points[rows], leg.horizon.normal, screens)
-            total[rows] += self.source.exitance * factor
+        for source, flux in zip(self.sources, self.flux, strict=True):
+            if leg.depth == 0 or leg.throughput * flux > _FAINT * self.cutoff:
+                self.checkpoint()
+                self._add_source(leg, source, total)
         if leg.depth < DEEPEST_CHAIN:
             for mirror in self.mirrors:
                 self._add_mirrored(leg, mirror, total)
         return total
+
+    def _add_source(self, leg: _Leg, source: Source, total: np.ndarray) -> None:
+        outlines, tolerance = self.outlines, self.outlines.tolerance
+        plane, at = source.plane
+        visible = leg.clipped(source.polygon)
+        if polygons.areas(visible)[0] <= tolerance**2:
+            return
+        rows, shape = leg.seen(np.flatnonzero(leg.points @ plane - at > tolerance), visible[0])
+        if not len(rows):
+            return
+        between = _between(outlines, leg.points[rows], visible[0], [HalfSpace(plane, at), *leg.limits])
+        screens = [*leg.screens, *(Screen(polygon, o) for o, polygon in between)]
+        factor = _seen_factor(outlines, shape, leg.points[rows], leg.horizon.normal, screens, leg.mirrors)
+        total[rows] += source.exitance * factor
 
     def _add_mirrored(self, leg: _Leg, mirror: int, total: np.ndarray) -> None:
         outlines, tolerance = self.outlines, self.outlines.tolerance
@@ -184,28 +226,55 @@ class _SourceView:
         for side in (1.0, -1.0) if both else (1.0,):
             ahead = HalfSpace(side * normal, side * offset)
             rows = np.flatnonzero(leg.points @ ahead.normal - ahead.offset > tolerance)
-            if not len(rows) or not _above(self.source.polygon[None], ahead, tolerance)[0]:
+            if not len(rows) or not any(_above(s.polygon[None], ahead, tolerance)[0] for s in self.sources):
                 continue
-            mouths = [s for s in leg.screens if s.aperture]
-            if mouths:
-                open_to = _seen_factor(
-                    outlines, aperture[0], leg.points[rows], leg.horizon.normal, mouths, any_side=True
-                )
-                rows = rows[open_to > 0]
+            rows, window = leg.seen(rows, aperture[0])
             if not len(rows):
                 continue
             between = _between(outlines, leg.points[rows], aperture[0], [ahead, *leg.limits], skip=mirror)
-            screens = [*leg.screens, *(Screen(polygon, o, False) for o, polygon in between)]
+            screens = [*leg.screens, *(Screen(polygon, o) for o, polygon in between)]
+            passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in leg.mirrors]
             total[rows] += self.illuminance(
                 _Leg(
                     reflect_points(leg.points[rows], normal, offset),
                     leg.horizon.reflected(normal, offset),
-                    (*(s.reflected(normal, offset) for s in screens), Screen(aperture[0], mirror, True)),
+                    reflect(window, normal),
+                    (*passed, Mirrored(material, normal)),
+                    tuple(s.reflected(normal, offset) for s in screens),
                     throughput,
                     ahead,
                     leg.depth + 1,
                 )
             )
+
+
+def within_cones(shapes, windows) -> np.ndarray:
+    """Part of each polygon that is seen through a convex window, both relative to the eye.
+
+    Parameters
+    ----------
+    shapes : (r, v, 3) float, padded
+    windows : (r, w, 3) float, padded
+
+    Returns
+    -------
+    (r, u, 3) float, padded
+    """
+    planes, _, facing = _edge_cones(windows)
+    for edge in range(planes.shape[1]):
+        shapes = polygons.clip(shapes, planes[:, edge])
+    return np.where((facing != 0)[:, None, None], shapes, shapes[:, :1])
+
+
+def _edge_cones(windows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Planes through the eye and a window's edges, positive inside; which are edges; from which side it is seen."""
+    planes = polygons.cross(windows, np.roll(windows, -1, axis=1))
+    facing = np.einsum("rc,rc->r", polygons.newell_normal(windows), windows[:, 0])
+    planes *= np.sign(facing)[:, None, None]
+    length = np.linalg.norm(planes, axis=2)
+    edges = length > 1e-14 * np.linalg.norm(windows, axis=2).max(axis=1)[:, None] ** 2
+    planes = np.where(edges[:, :, None], planes / np.where(edges, length, 1.0)[:, :, None], 0.0)
+    return planes, edges, facing
 
 
 def _above(vertices, half: HalfSpace, tolerance: float) -> np.ndarray:
@@ -238,56 +307,46 @@ def _between(outlines: Outlines, points, target, half_spaces: list[HalfSpace], s
             yield int(o), part[0]
 
 
-def _seen_factor(
-    outlines: Outlines, target, points, normal, screens: list[Screen], any_side: bool = False
-) -> np.ndarray:
-    """(r,) float: form factor to what is seen of a polygon, times what the screens let through or reflect."""
+def _seen_factor(outlines: Outlines, shape, points, normal, screens: list[Screen], mirrors) -> np.ndarray:
+    """(r,) float: form factor to what is seen of polygons, times what panes let through and mirrors reflect."""
     row = np.arange(len(points))
-    shape = target[None] - points[:, None]
     weight = np.ones(len(points))
     for screen in screens:
-        relative = screen.polygon[None] - points[:, None]
-        planes = polygons.cross(relative, np.roll(relative, -1, axis=1))
-        facing = np.einsum("rc,rc->r", polygons.newell_normal(relative), relative[:, 0])
-        planes *= np.sign(facing)[:, None, None]
-        length = np.linalg.norm(planes, axis=2)
-        size = np.linalg.norm(relative, axis=2).max(axis=1) ** 2
-        edges = length > 1e-14 * size[:, None]
-        planes = np.where(edges[:, :, None], planes / np.where(edges, length, 1.0)[:, :, None], 0.0)
-        flat = facing == 0
+        planes, edges, facing = _edge_cones(screen.polygon[None] - points[:, None])
         height = np.einsum("nvc,nwc->nvw", shape, planes[row])
         reach = np.abs(shape).max(axis=(1, 2))
-        overlaps = ((height.max(axis=1) > 1e-12 * reach[:, None]) | ~edges[row]).all(axis=1) & ~flat[row]
+        overlaps = ((height.max(axis=1) > 1e-12 * reach[:, None]) | ~edges[row]).all(axis=1) & (facing[row] != 0)
         row, shape, weight = _pass_screen(outlines, screen, row, shape, weight, planes, edges, overlaps)
         if not len(row):
             return np.zeros(len(points))
-    factor = polygons.lambert_form_factor(shape, normal)
-    factor = np.abs(factor) if any_side else np.maximum(factor, 0.0)
+    centre = shape.mean(axis=1)
+    for mirror in mirrors:
+        weight = weight * mirror.share(centre)
+    factor = np.maximum(polygons.lambert_form_factor(shape, normal), 0.0)
     return np.bincount(row, weights=weight * factor, minlength=len(points))
 
 
 def _pass_screen(outlines, screen, row, shape, weight, planes, edges, overlaps):
-    kept = [] if screen.aperture else [(row[~overlaps], shape[~overlaps], weight[~overlaps])]
+    """Polygons less a screen's cone; behind a pane they are kept, dimmed."""
+    kept = [(row[~overlaps], shape[~overlaps], weight[~overlaps])]
     row, shape, weight = row[overlaps], shape[overlaps], weight[overlaps]
-    normal = outlines.normals[screen.outline]
     material = outlines.materials[screen.outline]
     for e in range(planes.shape[1]):
         if not len(row):
             break
         wall = planes[row, e]
-        if not screen.aperture:
-            outside = polygons.clip(shape, -wall)
-            keep = edges[row, e] & _has_area(outside)
-            kept.append((row[keep], outside[keep], weight[keep]))
+        outside = polygons.clip(shape, -wall)
+        keep = edges[row, e] & _has_area(outside)
+        kept.append((row[keep], outside[keep], weight[keep]))
         inside = polygons.clip(shape, wall)
         inside = inside if edges[:, e].all() else _choose(edges[row, e], inside, shape)
         keep = _has_area(inside)
         row, shape, weight = row[keep], inside[keep], weight[keep]
-    if screen.aperture or material.is_transparent:
+    if material.is_transparent:
+        plane = polygons.newell_normal(screen.polygon)
         centre = shape.mean(axis=1)
-        cosine = np.abs(centre @ _plane_of(screen, normal)) / np.maximum(np.linalg.norm(centre, axis=1), 1e-300)
-        share = material.specular_at(cosine) if screen.aperture else material.transmittance_at(cosine)
-        kept.append((row, shape, weight * share))
+        length = np.linalg.norm(centre, axis=1) * np.linalg.norm(plane)
+        kept.append((row, shape, weight * material.transmittance_at((centre @ plane) / np.maximum(length, 1e-300))))
     width = max([s.shape[1] for _, s, _ in kept if len(s)], default=1)
     padded = [
         np.concatenate([s, np.repeat(s[:, -1:], width - s.shape[1], axis=1)], axis=1) for _, s, _ in kept if len(s)
@@ -299,12 +358,6 @@ def _pass_screen(outlines, screen, row, shape, weight, planes, edges, overlaps):
         np.concatenate(padded),
         np.concatenate([w for _, s, w in kept if len(s)]),
     )
-
-
-def _plane_of(screen: Screen, fallback) -> np.ndarray:
-    normal = polygons.newell_normal(screen.polygon)
-    length = np.linalg.norm(normal)
-    return normal / length if length > 0 else fallback
 
 
 def _choose(which, one, other):

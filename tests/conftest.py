@@ -4,9 +4,13 @@ import importlib.util
 import sys
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+
+hypothesis.settings.register_profile("project", deadline=None)  # how long a case takes says nothing of its truth
+hypothesis.settings.load_profile("project")
 
 
 @pytest.fixture(scope="session")
