@@ -83,7 +83,7 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
     """
     rows = len(points)
     patches = np.zeros((rows, targets.patches.count))
-    direct = np.zeros((rows, targets.columns))
+    direct = np.zeros((rows, targets.columns), np.float32)
     specular = None
     unlit = np.zeros(rows)
     sightings, truncated = sight.sightings(points, checkpoint)
@@ -97,13 +97,8 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
         else:
             _add_sky(s, targets, sight.hemisphere, direct)
             _splat(s, parts, targets, direct)
-    as_float32 = np.float32
     return Gathered(
-        patches.astype(as_float32),
-        direct.astype(as_float32),
-        None if specular is None else specular.astype(as_float32),
-        unlit.astype(as_float32),
-        truncated.astype(as_float32),
+        patches.astype(np.float32), direct, specular, unlit.astype(np.float32), truncated.astype(np.float32)
     )
 
 
@@ -194,7 +189,10 @@ def _add_sky(s: Sighting, targets: Targets, hemisphere: Hemisphere, out: np.ndar
     parcels = hemisphere.parcels[s.beams.columns]
     free = np.where(s.view.seen == OPEN, s.weights, 0.0)
     above = parcels < targets.sky_parcels
-    out[np.ix_(s.rows, parcels[above])] += free[:, above]
+    if len(s.rows) == len(out):
+        out[:, parcels[above]] += free[:, above]
+    else:
+        out[np.ix_(s.rows, parcels[above])] += free[:, above]
     out[s.rows, -1] += free[:, ~above].sum(axis=1)
 
 

@@ -57,6 +57,11 @@ class Beams:
         """(k, 2) float [rad]."""
         return self.hemisphere.half_widths[self.columns]
 
+    @cached_property
+    def spans(self) -> np.ndarray:
+        """(k, 2, 3) float32: vectors from side to side of each beam."""
+        return (2 * self.half_widths[:, :, None] * self.axes).astype(np.float32)
+
     @property
     def odd(self) -> np.ndarray:
         """(k,) bool: beams that a rectangle stands for badly."""

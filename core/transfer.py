@@ -24,7 +24,7 @@ from .stages import Progress, Recorder, Stage
 PATCHES = 2_000
 """Patches that exitance is resolved in."""
 
-_CHUNK_CELLS = 80_000
+_CHUNK_CELLS = 250_000
 """Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
 
 

@@ -145,6 +145,7 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
         empty = np.zeros(0, np.int64)
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
     candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
+    planes = planes.astype(np.float32)
     return _settle_parts(
         seen, nearest, possible, candidates, planes, heights, np.asarray(normal, float), beams, obstacles
     )
@@ -244,9 +245,10 @@ def _settle_parts(
     joined &= np.add.reduceat(crossed.edges, starts) == 2
     ahead = np.isfinite(np.maximum.reduceat(crossed.distance, starts))
     simple = (joined | lone | aligned) & ahead
-    # every crossing edge met by an opposite one: a seam or a corner where obstacles close
-    closed = np.linalg.norm(np.add.reduceat(crossed.edge_sum, starts, axis=0), axis=1) < _SEAM
     simple &= joined | (background != OPEN) | ~beams.odd[head[1]]
+    # every crossing edge met by an opposite one: a corner where obstacles close
+    closed = np.zeros(len(starts), bool)
+    closed[~simple] = np.linalg.norm(_group_sums(crossed.edge_sum, starts, ~simple), axis=1) < _SEAM
 
     # several edges, but no opening: shares by each edge alone, brought to a sum of 1
     filled = ~simple & (total > 1e-9) & closed & (background == OPEN)
@@ -258,9 +260,11 @@ def _settle_parts(
     whole = joined | filled
     share /= np.where(whole, weighted, 1.0)[group]
     left = np.where(whole, 0.0, np.clip(1.0 - weighted, 0.0, 1.0))
-    moment = np.add.reduceat(crossed.share[:, None] * crossed.offset, starts, axis=0)
     towards = beams.directions[crossed.beam] + crossed.offset
-    left_towards = beams.directions[head[1]] - moment / np.maximum(1.0 - total, 1e-3)[:, None]
+    left_towards = beams.directions[head[1]]
+    rest = simple & (left > 0)
+    moment = _group_sums(crossed.share[:, None] * crossed.offset, starts, rest)
+    left_towards[rest] -= moment / np.maximum(1.0 - total[rest], 1e-3)[:, None]
 
     open_ = ~simple & ~filled
     for order in _RAYS:
@@ -323,33 +327,45 @@ def _subtract_aligned(crossed: _Crossed) -> np.ndarray:
     return pair & (np.abs(alike) > _ALIGNED)
 
 
+def _group_sums(values: np.ndarray, starts: np.ndarray, which: np.ndarray) -> np.ndarray:
+    """(w, c) float: sums of values ``(n, c)`` over some of the groups that begin at ``starts``."""
+    rows = np.flatnonzero(np.repeat(which, np.diff(np.append(starts, len(values)))))
+    if not len(rows):
+        return np.zeros((0, values.shape[1]))
+    sizes = np.diff(np.append(starts, len(values)))[which]
+    return np.add.reduceat(values[rows], np.cumsum(sizes) - sizes, axis=0)
+
+
 def _crossings(seen, candidates, planes, heights, beams: Beams, obstacles: Obstacles) -> _Crossed:
     """Candidates that edges really cross, with the share that one edge alone leaves them."""
     row, beam, obstacle, sine = candidates
-    reach = beams.reach[beam]
+    reach = beams.reach.astype(np.float32)[beam]
     pair, edge = np.nonzero(np.abs(sine) < reach[:, None])
     normal = planes[row[pair], obstacle[pair], edge]
-    across = 2 * beams.half_widths[beam[pair]] * np.abs(np.einsum("nac,nc->na", beams.axes[beam[pair]], normal))
-    place = sine[pair, edge].astype(float)
-    support = 0.5 * across.sum(axis=1)
+    across = np.abs(np.matmul(beams.spans[beam[pair]], normal[:, :, None])[:, :, 0])
+    place = sine[pair, edge]
+    support = 0.5 * (across[:, 0] + across[:, 1])
     outside = (sine <= -reach[:, None]).any(axis=1)
     outside[pair[place <= -support]] = True
     crossing = np.abs(place) < support
     pair, normal, across, place = pair[crossing], normal[crossing], across[crossing], place[crossing]
     edges = np.bincount(pair, minlength=len(row))
-    offset = np.zeros((len(row), 3))
-    covered, moment = coverage(place, across[:, 0], across[:, 1])
+    offset = np.zeros((len(row), 3), np.float32)
+    covered, moment = coverage(place.astype(float), across[:, 0], across[:, 1])
     # exact for one edge, and near enough where edges meet at a corner
     share = np.exp(np.bincount(pair, weights=np.log(np.maximum(covered, 1e-30)), minlength=len(row)))
     offset[pair] = (moment / np.maximum(covered, 1e-12))[:, None] * normal
     # what is nearer shows at the part's own centre: an edge may stand on the obstacle behind it
-    towards = beams.directions[beam] + offset
+    towards = beams.directions.astype(np.float32)[beam] + offset
     distance = _distance_along(heights, obstacles, row, obstacle, towards)
     far = np.full(len(row), np.inf)
     known = np.flatnonzero(seen[row, beam] >= 0)
     far[known] = _distance_along(heights, obstacles, row[known], seen[row[known], beam[known]], towards[known])
     behind = np.isfinite(distance) & (distance >= np.where(edges < 2, far, _WELL_BEHIND * far))
-    edge_sum = np.stack([np.bincount(pair, weights=normal[:, k], minlength=len(row)) for k in range(3)], axis=1)
+    edge_sum = np.zeros((len(row), 3), np.float32)
+    lone = edges[pair] == 1
+    edge_sum[pair[lone]] = normal[lone]
+    np.add.at(edge_sum, pair[~lone], normal[~lone])
     keep = np.flatnonzero(~outside & (heights[row, obstacle] != 0) & ~behind)
     key = row[keep] * len(beams.directions) + beam[keep]
     order = np.lexsort((distance[keep], key))
@@ -385,7 +401,7 @@ def _sample_parts(
     for edge in range(near.shape[1]):
         some = np.flatnonzero(near[:, edge])
         if len(some):
-            across = planes[row[some], obstacle[some], edge].astype(single)
+            across = planes[row[some], obstacle[some], edge]
             inside[some] &= np.matmul(mine[some], across[:, :, None])[:, :, 0] >= -_ON_EDGE
 
     def distances(rows, obstacles_, towards):
