@@ -20,6 +20,22 @@ ELEMENTS_PER_PLAIN_SURFACE = 96
 """Receivers inside a surface that neither emits nor reflects diffusely, and so is not cut itself."""
 
 
+@dataclass(frozen=True)
+class Grid:
+    """A run of triangles that are the halves of rows × columns cells.
+
+    Attributes
+    ----------
+    first : int
+        The first triangle; those of a cell follow each other, then those of the next column.
+    rows, columns : int
+    """
+
+    first: int
+    rows: int
+    columns: int
+
+
 @dataclass(frozen=True, eq=False)
 class Triangles:
     """Triangles with what they come from.
@@ -29,10 +45,13 @@ class Triangles:
     vertices : (n, 3, 3) float, relative to the scene's centre
     parent : (n,) int
         Index of the piece or face that each was cut from.
+    grids : tuple of Grid
+        Regular runs among them.
     """
 
     vertices: np.ndarray
     parent: np.ndarray
+    grids: tuple[Grid, ...] = ()
 
     @property
     def areas(self) -> np.ndarray:
@@ -71,6 +90,7 @@ def cut_pieces(pieces, counts, max_areas) -> Triangles:
         gap = v[:, 0] + v[:, 2] - v[:, 1] - v[:, min(3, v.shape[1] - 1)]
         closes &= np.linalg.norm(gap, axis=1) <= 1e-9 * np.ptp(v, axis=1).max(axis=1)
     side = np.sqrt(2 * limits)
+    shapes = {}
     for length in np.unique(counts[~closes]):
         rows = np.flatnonzero(~closes & (counts == length))
         fan = np.stack(
@@ -91,10 +111,13 @@ def cut_pieces(pieces, counts, max_areas) -> Triangles:
         cells = np.stack([np.stack([p, q, r], axis=2), np.stack([p, r, s], axis=2)], axis=2)
         triangles.append(cells.reshape(-1, 3, 3))
         order.append(np.full(2 * nu * nv, row))
+        shapes[int(row)] = (nu, nv)
     parent = np.concatenate(order)
     vertices = np.concatenate(triangles)
     arranged = np.argsort(parent, kind="stable")
-    return halve(Triangles(vertices[arranged], parent[arranged]), limits)
+    cut = halve(Triangles(vertices[arranged], parent[arranged]), limits)
+    grids = tuple(Grid(int(np.searchsorted(cut.parent, row)), *shape) for row, shape in shapes.items())
+    return Triangles(cut.vertices, cut.parent, grids)
 
 
 def halve(triangles: Triangles, limits) -> Triangles:
@@ -154,6 +177,8 @@ class Fracture:
     element_sheet : (e,) int
         Sheet, plus the number of sheets for backs.
     element_areas : (e,) float [m²]
+    grids : tuple of Grid
+        Runs of elements that are halves of cells.
     """
 
     faces: np.ndarray
@@ -166,6 +191,7 @@ class Fracture:
     element_side: np.ndarray
     element_sheet: np.ndarray
     element_areas: np.ndarray
+    grids: tuple[Grid, ...]
 
     @property
     def sides(self) -> int:
@@ -216,6 +242,15 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
     side = np.concatenate([parts.parent, place[parts.parent[behind]]])
     element_sheet = np.concatenate([sheet[parts.parent], sheet[parts.parent[behind]] + len(planes.sheet_surface)])
     elements = np.concatenate([parts.vertices, parts.vertices[behind][:, ::-1]])
+    grids = []
+    for grid in faces.grids:
+        span = 2 * grid.rows * grid.columns
+        first, last = np.searchsorted(parts.parent, [grid.first, grid.first + span])
+        if last - first != span or span < 4 * 2:
+            continue  # halved further, or too few cells to tell how light changes
+        grids.append(Grid(int(first), grid.rows, grid.columns))
+        if place[grid.first] >= 0:
+            grids.append(Grid(len(parts.parent) + int(np.searchsorted(behind, first)), grid.rows, grid.columns))
     return Fracture(
         faces=faces.vertices,
         face_surface=face_surface,
@@ -227,6 +262,7 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
         element_side=side,
         element_sheet=element_sheet,
         element_areas=polygons.areas(elements),
+        grids=tuple(grids),
     )
 
 

@@ -10,6 +10,9 @@ import numpy as np
 from . import polygons
 from .globe import Hemisphere
 
+UNTURNED = np.eye(3)
+"""What beams that met no mirror are turned by."""
+
 
 @dataclass(frozen=True, eq=False)
 class Beams:
@@ -32,7 +35,7 @@ class Beams:
     @classmethod
     def of(cls, hemisphere: Hemisphere) -> Beams:
         """All beams of a hemisphere."""
-        return cls(hemisphere, np.arange(len(hemisphere.directions)), np.eye(3))
+        return cls(hemisphere, np.arange(len(hemisphere.directions)), UNTURNED)
 
     def take(self, index) -> Beams:
         """Some of the beams."""
@@ -69,7 +72,8 @@ class Beams:
 
     def rays(self, index, order: int) -> np.ndarray:
         """(m, F, 3) float: directions that make up some of the beams, see `Globe.scattered`."""
-        return self.hemisphere.scattered(order)[self.columns[index]] @ self.turn.T
+        rays = self.hemisphere.scattered(order)[self.columns[index]]
+        return rays if self.turn is UNTURNED else np.einsum("msc,dc->msd", rays, self.turn)
 
     @property
     def reach(self) -> np.ndarray:

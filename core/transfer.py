@@ -16,6 +16,7 @@ from .errors import Cancelled, SceneError
 from .fracture import Fracture, fracture, make_patches
 from .gather import Gathered, Targets, gather
 from .globe import Globe
+from .nodes import Nodes
 from .planes import Planes, find_planes
 from .scene import Scene
 from .specular import ChainLimits, GroupSight, Outlines
@@ -222,18 +223,30 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
     )
 
 
-def chunks_of_receivers(geometry: Geometry, beams: int) -> list[np.ndarray]:
-    """Elements of one plane that lie near each other, in chunks that stay in cache."""
+def chunks_of_receivers(points, sheet, planes: Planes, beams: int) -> list[np.ndarray]:
+    """Receivers of one plane that lie near each other, in chunks that stay in cache.
+
+    Parameters
+    ----------
+    points : (m, 3) float
+    sheet : (m,) int, plus the number of sheets for backs
+    planes : Planes
+    beams : int
+        About how many beams each receiver has.
+
+    Returns
+    -------
+    list of (k,) int arrays
+    """
     size = max(8, _CHUNK_CELLS // max(beams, 1))
-    sheet = geometry.fracture.element_sheet
-    fronts = len(geometry.planes.sheet_surface)
+    fronts = len(planes.sheet_surface)
     order = np.argsort(sheet, kind="stable")
     bounds = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0, [True])))
     chunks = []
     for a, b in itertools.pairwise(bounds):
         members = order[a:b]
         if len(members) > size:
-            place = geometry.element_points[members] @ geometry.planes.sheet_axes[sheet[members[0]] % fronts].T
+            place = points[members] @ planes.sheet_axes[sheet[members[0]] % fronts].T
             extent = np.maximum(np.ptp(place, axis=0), 1e-300)
             blocks = len(members) / size
             cell = math.sqrt(extent.prod() / blocks) if extent.min() > 1e-9 * extent.max() else extent.max() / blocks
@@ -258,8 +271,8 @@ class _Rows:
     truncated: np.ndarray
 
     @classmethod
-    def empty(cls, geometry: Geometry) -> _Rows:
-        count, targets = len(geometry.element_points), geometry.targets
+    def empty(cls, count: int, geometry: Geometry) -> _Rows:
+        targets = geometry.targets
         specular = (count, targets.columns) if geometry.outlines.any_specular else (0, targets.columns)
         return cls(
             np.empty((count, targets.patches.count), np.float32),
@@ -279,23 +292,37 @@ class _Rows:
             self.sky_specular[members] = rows.sky_specular
             self.specular_rows[members] = True
 
+    def spread(self, nodes: Nodes, geometry: Geometry, threads: int) -> _Rows:
+        """Rows of the elements from rows of the nodes."""
+        elements = _Rows.empty(len(geometry.element_points), geometry)
+        steps = nodes.steps(self.form_factors if self.form_factors.shape[1] else self.sky_direct)
+        nodes.spread(self.form_factors, steps, elements.form_factors, threads)
+        nodes.spread(self.sky_direct, steps, elements.sky_direct, threads)
+        nodes.spread(self.unlit, steps, elements.unlit, threads)
+        nodes.spread(self.truncated, steps, elements.truncated, threads)
+        if len(self.sky_specular):
+            nodes.spread(self.sky_specular, steps, elements.sky_specular, threads)
+            np.any(elements.sky_specular, axis=1, out=elements.specular_rows)
+        return elements
+
 
 def _gather_elements(geometry: Geometry, limits: ChainLimits, threads: int, recorder: Recorder):
-    rows = _Rows.empty(geometry)
-    half = geometry.targets.globe.count // 2
-    chunks = chunks_of_receivers(geometry, half)
+    nodes = Nodes.of(geometry.fracture)
+    rows = _Rows.empty(len(nodes.points), geometry)
+    chunks = chunks_of_receivers(nodes.points, nodes.sheet, geometry.planes, geometry.targets.globe.count // 2)
     sights: dict[int, GroupSight] = {}
     for members in chunks:
-        sheet = int(geometry.fracture.element_sheet[members[0]])
+        sheet = int(nodes.sheet[members[0]])
         if sheet not in sights:
-            normal = geometry.element_normals[members[0]]
-            sights[sheet] = sight_of(geometry, limits, normal, float(normal @ geometry.element_points[members[0]]))
+            normal = geometry.element_normals[nodes.element[members[0]]]
+            sights[sheet] = sight_of(geometry, limits, normal, float(normal @ nodes.points[members[0]]))
 
     def work(members: np.ndarray, checkpoint) -> None:
-        sight = sights[int(geometry.fracture.element_sheet[members[0]])]
-        rows.put(members, gather(sight, geometry.element_points[members], geometry.targets, checkpoint))
+        sight = sights[int(nodes.sheet[members[0]])]
+        rows.put(members, gather(sight, nodes.points[members], geometry.targets, checkpoint))
 
-    run_parallel(work, chunks, threads, lambda done: recorder.report(0.02 + 0.96 * done, "visibility and form factors"))
+    run_parallel(work, chunks, threads, lambda done: recorder.report(0.02 + 0.94 * done, "visibility and form factors"))
+    rows = rows.spread(nodes, geometry, threads)
     return rows, _patch_means(geometry, rows.form_factors)
 
 

@@ -24,6 +24,8 @@ SHARED = -2
 _RAYS = (8, 11)
 """Order of the lattice of rays in a beam that several edges cross: 21 rays, then 89 where sky shows in part."""
 
+_LONE_PRODUCT = 60_000
+
 _ON_EDGE = 1e-6
 """Rays this close to an edge [rad] count as inside, so that none slips between two obstacles that share it."""
 
@@ -194,7 +196,16 @@ def _columns_within(hull, outline, bounded, heights, directions, reach):
 def _edge_sines(edges: np.ndarray, directions: np.ndarray) -> list[np.ndarray]:
     """For each edge (r, k) float32: sine of the angle from each beam's centre to its plane, positive inside."""
     across = np.ascontiguousarray(directions.T)
-    return [np.dot(np.ascontiguousarray(edges[:, e]), across) for e in range(edges.shape[1])]
+    # products this small are not split over threads by BLAS, which would wait for each other here
+    step = max(1, _LONE_PRODUCT // max(1, len(edges)))
+    sines = []
+    for e in range(edges.shape[1]):
+        edge = np.ascontiguousarray(edges[:, e])
+        sine = np.empty((len(edges), across.shape[1]), np.float32)
+        for first in range(0, across.shape[1], step):
+            np.matmul(edge, np.ascontiguousarray(across[:, first : first + step]), out=sine[:, first : first + step])
+        sines.append(sine)
+    return sines
 
 
 @dataclass(frozen=True, eq=False)
@@ -393,7 +404,7 @@ def _sample_parts(
     local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(row))))
     single = np.float32
     rays = beams.rays(beam[starts], order).astype(single)
-    weight = np.maximum(rays @ normal.astype(single), 0.0)
+    weight = np.maximum(np.einsum("gsc,c->gs", rays, normal.astype(single)), 0.0)
     weight /= np.maximum(weight.sum(axis=1, keepdims=True), single(1e-30))
     mine = rays[local]
     inside = np.ones(mine.shape[:2], bool)
