@@ -59,11 +59,12 @@ def lumen_balance(result: Result) -> Balance:
     flux = area * (emitted + reflectance * illuminance)
     open_share = transfer.sky_direct.sum(axis=1)
     open_share[transfer.specular_rows] += transfer.sky_specular.sum(axis=1)
-    escaped, unlit = float(flux @ open_share), float(flux @ transfer.unlit)
-    lost = flux @ transfer.truncated
+    escaped, unlit, lost = (
+        float(flux @ transfer.on_elements(share)) for share in (open_share, transfer.unlit, transfer.truncated)
+    )
     absorbed = np.bincount(surface, weights=area * illuminance * absorptance, minlength=len(materials))
     # light from outside that is cut with its chain never lands, so it is no part of entering
-    truncated = float(lost)
+    truncated = lost
     if entering == 0:
         return Balance(
             0.0,
@@ -93,4 +94,4 @@ def _cut_sky(result: Result) -> float:
     weight = transfer.sky_direct.sum(axis=0)
     total = float(weight.sum())
     mean = float(weight @ result.sky) / total if total else 0.0
-    return float(np.pi * mean * (area @ transfer.truncated))
+    return float(np.pi * mean * (area @ transfer.on_elements(transfer.truncated)))

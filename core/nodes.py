@@ -1,16 +1,14 @@
 """Nodes: one receiver for the two triangles of a grid cell, and what their own centroids receive by differences.
 
 Form factors vary evenly over a face's width, so the two triangles of a cell share the receiver at the cell's centre;
-each gets its row plus or minus the change towards its centroid. The change is taken from that neighbour, along either
+each gets its value plus or minus the change towards its centroid. The change is taken from that neighbour, along either
 axis, from which the row differs least: across the line where a shelf meets a wall nothing is mixed. The mean of the two
 stays the cell's own.
 """
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -75,41 +73,25 @@ class Nodes:
             found.append((_flatter_side(cells, 0), _flatter_side(cells, 1)))
         return found
 
-    def spread(self, values: np.ndarray, steps, out: np.ndarray, threads: int = 1) -> None:
-        """Fill elements' rows ``(e, ...)`` from nodes' rows ``(m, ...)``.
+    def spread(self, values: np.ndarray, steps, out: np.ndarray) -> None:
+        """Fill elements' values ``(e,)`` from nodes' values ``(m,)``.
 
         Parameters
         ----------
-        values : (m, ...) float
-            Never negative; no element's row becomes so.
+        values : (m,) float
+            Never negative; no element's value becomes so.
         steps : list
             Of `steps`.
-        out : (e, ...) float
-        threads : int
+        out : (e,) float
         """
         cells_end = sum(grid.rows * grid.columns for _, grid in self.grids)
         out[self.element[cells_end:]] = values[cells_end:]
-        with ThreadPoolExecutor(max_workers=threads) as pool:
-            fill = partial(_fill_grid, values, out)
-            list(pool.map(fill, self.grids, steps))
-
-
-def _fill_grid(values: np.ndarray, out: np.ndarray, place: tuple[int, Grid], steps) -> None:
-    start, grid = place
-    shape = (grid.rows, grid.columns, *values.shape[1:])
-    cells = values[start : start + grid.rows * grid.columns].reshape(shape)
-    pairs = out[grid.first : grid.first + 2 * grid.rows * grid.columns]
-    pairs = pairs.reshape(grid.rows, grid.columns, 2, *values.shape[1:])
-    for row in range(grid.rows):  # a row at a time stays in cache
-        mine = slice(row, row + 1)
-        here = cells[mine]
-        change = _change(cells, steps[0], 0, mine)
-        change -= _change(cells, steps[1], 1, mine)
-        change *= _TO_CENTROID
-        np.minimum(change, here, out=change)
-        np.maximum(change, -here, out=change)
-        np.add(here, change, out=pairs[mine, :, 0])
-        np.subtract(here, change, out=pairs[mine, :, 1])
+        for (start, grid), (along_rows, along_columns) in zip(self.grids, steps, strict=True):
+            cells = values[start : start + grid.rows * grid.columns].reshape(grid.rows, grid.columns)
+            change = _TO_CENTROID * (_change(cells, along_rows, 0) - _change(cells, along_columns, 1))
+            change = np.clip(change, -cells, cells)
+            pairs = np.stack([cells + change, cells - change], axis=2)
+            out[grid.first : grid.first + 2 * grid.rows * grid.columns] = pairs.ravel()
 
 
 def _flatter_side(cells: np.ndarray, axis: int) -> np.ndarray:
@@ -123,14 +105,8 @@ def _flatter_side(cells: np.ndarray, axis: int) -> np.ndarray:
     return np.where(ahead <= behind, 1, -1)
 
 
-def _change(cells: np.ndarray, side: np.ndarray, axis: int, rows: slice) -> np.ndarray:
-    """Change per cell along an axis in some of the grid's rows, taken from the chosen side."""
-    if cells.shape[axis] < 2:
-        return np.zeros_like(cells[rows])
-    place = np.indices(side.shape)[:, rows]
-    place[axis] += side[rows]
-    wide = side[rows].reshape(*side[rows].shape, *([1] * (cells.ndim - 2))).astype(cells.dtype)
-    change = cells[tuple(place)]
-    change -= cells[rows]
-    change *= wide
-    return change
+def _change(cells: np.ndarray, side: np.ndarray, axis: int) -> np.ndarray:
+    """Change per cell along an axis, taken from the chosen side."""
+    place = np.indices(side.shape)
+    place[axis] += side
+    return (cells[tuple(place)] - cells) * side

@@ -20,6 +20,7 @@ EXACT_OUTLINES = 400
 """Scenes of more outlines gather luminous surfaces and sun patches by the globe, like all other light."""
 
 _SKY_SUBDIVISION = 4
+_SOURCE_ROWS = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +61,11 @@ def solve_light(
     sky = sky_column(geometry, light)
     if sky.any():
         with recorder.stage("sky", 0.0):
-            components["sky_direct"] = np.pi * (transfer.sky_direct @ sky).astype(float)
-            components["sky_specular"][transfer.specular_rows] = np.pi * (transfer.sky_specular @ sky)
+            single = sky.astype(np.float32)  # else the whole matrix would be copied to float64
+            mirrored = np.zeros(len(transfer.nodes.points))
+            mirrored[transfer.specular_rows] = np.pi * (transfer.sky_specular @ single)
+            components["sky_direct"] = transfer.on_elements(np.pi * (transfer.sky_direct @ single).astype(float))
+            components["sky_specular"] = transfer.on_elements(mirrored)
     else:
         recorder.skip("sky", "no sky and no ground light")
 
@@ -135,7 +139,7 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     by_globe = np.zeros(len(emitted))
     if len(geometry.outlines.vertices) > EXACT_OUTLINES:
         by_globe, emitters, sunny = emitted, [], []
-        components["emitted"] = (transfer.form_factors @ emitted).astype(float)
+        components["emitted"] = transfer.on_elements(gather_patches(transfer, emitted))
     elif emitters:
         components["emitted"] = _gather_elements(transfer, emitters, recorder)
     smooth = components["sky_direct"] + components["sky_specular"] + components["emitted"]
@@ -155,7 +159,7 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     else:
         settled = _cycles_after_first(transfer.patch_factors, reflectance, smooth, once, cycles, checkpoint)
     exitance = reflectance * settled
-    components["interreflected"] = first + transfer.form_factors @ exitance
+    components["interreflected"] = first + transfer.on_elements(gather_patches(transfer, exitance))
     return Field(components, exitance, by_globe, [*emitters, *sunny], len(emitters))
 
 
@@ -189,23 +193,27 @@ def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], li
 
 
 def _gather_elements(transfer: Transfer, sources: list[Source], recorder: Recorder) -> np.ndarray:
-    geometry = transfer.geometry
-    out = np.zeros(len(geometry.element_points))
-    sheet = geometry.fracture.element_sheet
-    order = np.argsort(sheet, kind="stable")
-    bounds = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0, [True])))
+    geometry, nodes = transfer.geometry, transfer.nodes
+    found = np.zeros(len(nodes.points))
+    order = np.argsort(nodes.sheet, kind="stable")
+    bounds = np.flatnonzero(np.concatenate(([True], np.diff(nodes.sheet[order]) > 0, [True])))
     tasks = []
     for a, b in itertools.pairwise(bounds):
-        tasks += [order[k : min(k + 512, b)] for k in range(a, b, 512)]
+        tasks += [order[k : min(k + _SOURCE_ROWS, b)] for k in range(a, b, _SOURCE_ROWS)]
 
     def work(members, checkpoint):
-        normal = geometry.element_normals[members[0]]
-        out[members] = gather_sources(
-            geometry.outlines, sources, geometry.element_points[members], normal, transfer.limits.cutoff, checkpoint
+        normal = geometry.element_normals[nodes.element[members[0]]]
+        found[members] = gather_sources(
+            geometry.outlines, sources, nodes.points[members], normal, transfer.limits.cutoff, checkpoint
         )
 
     run_parallel(work, tasks, transfer.threads, lambda done: recorder.report(0.1 + 0.6 * done, "interreflection"))
-    return out
+    return transfer.on_elements(found)
+
+
+def gather_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:
+    """(m,) float: illuminance of the nodes from patches of exitance ``(p,)`` [lx]."""
+    return (transfer.form_factors @ exitance.astype(np.float32)).astype(float)
 
 
 def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:

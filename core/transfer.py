@@ -65,17 +65,21 @@ class Transfer:
     Attributes
     ----------
     geometry : Geometry
-    form_factors : (e, p) float32
-        From each element (receiver) to each patch.
-    sky_direct : (e, c) float32
-        From each element to each sky parcel, and last to the ground; through panes, without mirrors.
-    sky_specular : (m, c) float32
-        The same by way of mirrors, for the elements in ``specular_rows``.
-    specular_rows : (m,) int
+    nodes : Nodes
+        The receivers, and ``steps``, how elements' values follow from theirs (see `Nodes.steps`).
+    form_factors : (m, p) float32
+        From each node (receiver) to each patch.
+    sky_direct : (m, c) float32
+        From each node to each sky parcel, and last to the ground; through panes, without mirrors.
+    sky_specular : (k, c) float32
+        The same by way of mirrors, for the nodes in ``specular_rows``.
+    specular_rows : (k,) int
     patch_factors : (p, p) float
-        From patch to patch: area-weighted means over each patch's elements.
-    unlit, truncated : (e,) float32
+        From patch to patch: area-weighted means over each patch's nodes.
+    unlit, truncated : (m,) float32
         Form factors to sides without diffuse light, and of chains cut off.
+    limits : ChainLimits
+    threads : int
     stages : tuple of Stage
     """
 
@@ -87,9 +91,17 @@ class Transfer:
     patch_factors: np.ndarray
     unlit: np.ndarray
     truncated: np.ndarray
+    nodes: Nodes
+    steps: list
     limits: ChainLimits
     threads: int
     stages: tuple[Stage, ...] = field(default=())
+
+    def on_elements(self, values: np.ndarray) -> np.ndarray:
+        """Values on the elements ``(e,)`` from values at the nodes ``(m,)``."""
+        out = np.zeros(len(self.geometry.element_points))
+        self.nodes.spread(values, self.steps, out)
+        return out
 
     def solve(self, light, *, tolerance: float = 1e-4, cycles: int | None = None, progress: Progress | None = None):
         """Illuminance for one sky and Sun.
@@ -169,7 +181,8 @@ def prepare(
         geometry = make_geometry(scene, planes, globe, max_area)
     _check_memory(geometry, memory)
     with recorder.stage("visibility and form factors", 0.02):
-        gathered, patch_factors = _gather_elements(geometry, ChainLimits(specular_cutoff), threads, recorder)
+        limits = ChainLimits(specular_cutoff)
+        gathered, patch_factors, nodes, steps = _gather_elements(geometry, limits, threads, recorder)
     if not geometry.outlines.any_specular:
         recorder.skip("specular chains", "no surface mirrors or transmits regularly")
     recorder.report(1.0, "prepared")
@@ -185,7 +198,9 @@ def prepare(
         patch_factors=patch_factors,
         unlit=gathered.unlit,
         truncated=gathered.truncated,
-        limits=ChainLimits(specular_cutoff),
+        nodes=nodes,
+        steps=steps,
+        limits=limits,
         threads=threads,
         stages=tuple(recorder.stages),
     )
@@ -292,19 +307,6 @@ class _Rows:
             self.sky_specular[members] = rows.sky_specular
             self.specular_rows[members] = True
 
-    def spread(self, nodes: Nodes, geometry: Geometry, threads: int) -> _Rows:
-        """Rows of the elements from rows of the nodes."""
-        elements = _Rows.empty(len(geometry.element_points), geometry)
-        steps = nodes.steps(self.form_factors if self.form_factors.shape[1] else self.sky_direct)
-        nodes.spread(self.form_factors, steps, elements.form_factors, threads)
-        nodes.spread(self.sky_direct, steps, elements.sky_direct, threads)
-        nodes.spread(self.unlit, steps, elements.unlit, threads)
-        nodes.spread(self.truncated, steps, elements.truncated, threads)
-        if len(self.sky_specular):
-            nodes.spread(self.sky_specular, steps, elements.sky_specular, threads)
-            np.any(elements.sky_specular, axis=1, out=elements.specular_rows)
-        return elements
-
 
 def _gather_elements(geometry: Geometry, limits: ChainLimits, threads: int, recorder: Recorder):
     nodes = Nodes.of(geometry.fracture)
@@ -322,8 +324,8 @@ def _gather_elements(geometry: Geometry, limits: ChainLimits, threads: int, reco
         rows.put(members, gather(sight, nodes.points[members], geometry.targets, checkpoint))
 
     run_parallel(work, chunks, threads, lambda done: recorder.report(0.02 + 0.94 * done, "visibility and form factors"))
-    rows = rows.spread(nodes, geometry, threads)
-    return rows, _patch_means(geometry, rows.form_factors)
+    steps = nodes.steps(rows.form_factors if rows.form_factors.shape[1] else rows.sky_direct)
+    return rows, _patch_means(geometry, nodes, rows.form_factors), nodes, steps
 
 
 def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[float], None]) -> None:
@@ -350,9 +352,10 @@ def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[fl
             raise
 
 
-def _patch_means(geometry: Geometry, form_factors: np.ndarray) -> np.ndarray:
-    """(p, p) float: means of the elements' form factors over each patch."""
-    patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
+def _patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> np.ndarray:
+    """(p, p) float: means of the nodes' form factors over each patch."""
+    patch = geometry.targets.patches.of_element[nodes.element]
+    area = geometry.fracture.element_areas[nodes.element]
     count = geometry.targets.patches.count
     means = np.zeros((count, count))
     mine = np.flatnonzero(patch >= 0)
