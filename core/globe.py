@@ -36,6 +36,7 @@ class Globe:
     """
 
     bands: int = 60
+    _scattered: dict[int, np.ndarray] = field(default_factory=dict, repr=False)
 
     def __post_init__(self):
         if isinstance(self.bands, bool) or not isinstance(self.bands, int | np.integer):
@@ -137,6 +138,12 @@ class Globe:
         step = (np.arange(splits) + 0.5) / splits
         down, across = np.meshgrid(step, step, indexing="ij")
         return self._inside(parcels, down.ravel(), across.ravel())
+
+    def all_scattered(self, order: int) -> np.ndarray:
+        """(count, F, 3) float32: `scattered` for all parcels; found once."""
+        if order not in self._scattered:
+            self._scattered[order] = self.scattered(np.arange(self.count), order).astype(np.float32)
+        return self._scattered[order]
 
     def scattered(self, parcels, order: int) -> np.ndarray:
         """Directions spread evenly over each parcel, no two in line along it or across it.
@@ -306,13 +313,6 @@ class Hemisphere:
     axes: np.ndarray
     odd: np.ndarray
     globe: Globe
-    _parts: dict[int, np.ndarray] = field(default_factory=dict)
-
-    def scattered(self, order: int) -> np.ndarray:
-        """(k, F, 3) float: see `Globe.scattered`; found once."""
-        if order not in self._parts:
-            self._parts[order] = self.globe.scattered(self.parcels, order)
-        return self._parts[order]
 
 
 def direction_of(polar, azimuth) -> np.ndarray:

@@ -71,9 +71,9 @@ class Beams:
         return self.hemisphere.odd[self.columns]
 
     def rays(self, index, order: int) -> np.ndarray:
-        """(m, F, 3) float: directions that make up some of the beams, see `Globe.scattered`."""
-        rays = self.hemisphere.scattered(order)[self.columns[index]]
-        return rays if self.turn is UNTURNED else np.einsum("msc,dc->msd", rays, self.turn)
+        """(m, F, 3) float32: directions that make up some of the beams, see `Globe.scattered`."""
+        rays = self.hemisphere.globe.all_scattered(order)[self.hemisphere.parcels[self.columns[index]]]
+        return rays if self.turn is UNTURNED else np.einsum("msc,dc->msd", rays, self.turn.astype(np.float32))
 
     @property
     def reach(self) -> np.ndarray:

@@ -403,7 +403,7 @@ def _sample_parts(
     row, beam, obstacle, starts = crossed.row, crossed.beam, crossed.obstacle, crossed.starts
     local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(row))))
     single = np.float32
-    rays = beams.rays(beam[starts], order).astype(single)
+    rays = beams.rays(beam[starts], order)
     weight = np.maximum(np.einsum("gsc,c->gs", rays, normal.astype(single)), 0.0)
     weight /= np.maximum(weight.sum(axis=1, keepdims=True), single(1e-30))
     mine = rays[local]
