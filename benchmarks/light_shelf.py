@@ -2,8 +2,9 @@
 
     python benchmarks/light_shelf.py [--repeats 3] [--bands 60] [--max-area 0.005] [--threads N]
 
-For each variant: seconds to prepare (median) and for another hour on the same geometry, peak memory, and the error against
-independent path tracing (``tests/data/ref_light_shelf.json``): of the surface means, and over the places of all surfaces.
+For each variant: seconds to prepare (median) and for another hour on the same geometry, peak memory, and the error
+against independent path tracing (``tests/data/ref_light_shelf.json``): of the surface means, and over the places of all
+surfaces.
 """
 
 import argparse

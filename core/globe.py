@@ -105,6 +105,13 @@ class Globe:
         return np.stack([across, self.solid_angles / (4 * across)], axis=1)
 
     @cached_property
+    def corners(self) -> np.ndarray:
+        """(count, 4, 3) float: directions of the parcels' corners."""
+        polar = self.polar_edges[self.band_of[:, None] + np.array([0, 0, 1, 1])]
+        azimuth = self.azimuth[:, None] + 0.5 * self.azimuth_width[:, None] * np.array([-1, 1, 1, -1])
+        return direction_of(polar, azimuth)
+
+    @cached_property
     def axes(self) -> np.ndarray:
         """(count, 2, 3) float: unit vectors of growing polar angle and growing azimuth at the parcel centres."""
         ct, st = np.cos(self.polar), np.sin(self.polar)
@@ -276,6 +283,7 @@ class Globe:
         odd = np.minimum(band, self.bands - 1 - band) < _POLAR_BANDS
         odd[cut] = True
         keep = weights > 0
+        chord = np.linalg.norm(self.corners[parcels] - directions[:, None], axis=2).max(axis=1)
         return Hemisphere(
             normal=n,
             parcels=parcels[keep],
@@ -284,6 +292,7 @@ class Globe:
             half_widths=half_widths[keep],
             axes=self.axes[parcels[keep]],
             odd=odd[keep],
+            reach=2 * np.arcsin(0.5 * chord[keep]),
             globe=self,
         )
 
@@ -300,6 +309,8 @@ class Hemisphere:
     weights : (k,) float, ∫ cos θ dω / π over that part; they sum to 1
     half_widths : (k, 2) float [rad]
     axes : (k, 2, 3) float, unit vectors along the half widths
+    reach : (k,) float
+        No corner of the parcel is farther from the direction than this [rad].
     odd : (k,) bool
         Parcels that a rectangle stands for badly: cut by the horizon, or next to a pole.
     globe : Globe
@@ -311,6 +322,7 @@ class Hemisphere:
     weights: np.ndarray
     half_widths: np.ndarray
     axes: np.ndarray
+    reach: np.ndarray
     odd: np.ndarray
     globe: Globe
 

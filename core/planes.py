@@ -183,4 +183,6 @@ def join_outline(loops: list[np.ndarray], normal: np.ndarray) -> list[np.ndarray
     parts = [part for ring in outer for part in polygons.convex_parts(ring, 1e-9 * extent)]
     if abs(sum(signed) - sum(polygons.areas(p) for p in loops)) > 1e-9 * extent**2 or len(parts) >= len(loops):
         return loops
+    if abs(sum(polygons.areas(np.c_[p, np.zeros(len(p))]) for p in parts) - sum(signed)) > 1e-9 * extent**2:
+        return loops  # rings that touch themselves
     return [part @ basis + origin for part in parts]

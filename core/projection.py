@@ -78,7 +78,7 @@ class Beams:
     @property
     def reach(self) -> np.ndarray:
         """(k,) float: no part of a beam is farther than this from its centre [rad]."""
-        return np.hypot(self.half_widths[:, 0], self.half_widths[:, 1])
+        return self.hemisphere.reach[self.columns]
 
 
 def reflect(vectors, normal) -> np.ndarray:

@@ -21,6 +21,7 @@ EXACT_OUTLINES = 400
 
 _SKY_SUBDIVISION = 4
 _SOURCE_ROWS = 4096
+_PRODUCT_ROWS = 128
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +62,9 @@ def solve_light(
     sky = sky_column(geometry, light)
     if sky.any():
         with recorder.stage("sky", 0.0):
-            single = sky.astype(np.float32)  # else the whole matrix would be copied to float64
             mirrored = np.zeros(len(transfer.nodes.points))
-            mirrored[transfer.specular_rows] = np.pi * (transfer.sky_specular @ single)
-            components["sky_direct"] = transfer.on_elements(np.pi * (transfer.sky_direct @ single).astype(float))
+            mirrored[transfer.specular_rows] = np.pi * product(transfer.sky_specular, sky)
+            components["sky_direct"] = transfer.on_elements(np.pi * product(transfer.sky_direct, sky))
             components["sky_specular"] = transfer.on_elements(mirrored)
     else:
         recorder.skip("sky", "no sky and no ground light")
@@ -213,7 +213,16 @@ def _gather_elements(transfer: Transfer, sources: list[Source], recorder: Record
 
 def gather_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:
     """(m,) float: illuminance of the nodes from patches of exitance ``(p,)`` [lx]."""
-    return (transfer.form_factors @ exitance.astype(np.float32)).astype(float)
+    return product(transfer.form_factors, exitance)
+
+
+def product(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """(m,) float: a float32 matrix times a float64 vector, summed in float64, some rows at a time."""
+    out = np.empty(len(matrix))
+    for first in range(0, len(matrix), _PRODUCT_ROWS):
+        rows = slice(first, first + _PRODUCT_ROWS)
+        out[rows] = matrix[rows].astype(float) @ vector
+    return out
 
 
 def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:

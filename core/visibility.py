@@ -355,14 +355,14 @@ def _crossings(seen, candidates, planes, heights, beams: Beams, obstacles: Obsta
     normal = planes[row[pair], obstacle[pair], edge]
     across = np.abs(np.matmul(beams.spans[beam[pair]], normal[:, :, None])[:, :, 0])
     place = sine[pair, edge]
-    support = 0.5 * (across[:, 0] + across[:, 1])
+    support = np.where(beams.odd[beam[pair]], reach[pair], 0.5 * (across[:, 0] + across[:, 1]))
     outside = (sine <= -reach[:, None]).any(axis=1)
     outside[pair[place <= -support]] = True
     crossing = np.abs(place) < support
     pair, normal, across, place = pair[crossing], normal[crossing], across[crossing], place[crossing]
     edges = np.bincount(pair, minlength=len(row))
     offset = np.zeros((len(row), 3), np.float32)
-    covered, moment = coverage(place.astype(float), across[:, 0], across[:, 1])
+    covered, moment = coverage(place.astype(float), *across.T.astype(float))
     # exact for one edge, and near enough where edges meet at a corner
     share = np.exp(np.bincount(pair, weights=np.log(np.maximum(covered, 1e-30)), minlength=len(row)))
     offset[pair] = (moment / np.maximum(covered, 1e-12))[:, None] * normal
