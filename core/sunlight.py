@@ -81,6 +81,8 @@ class Sunlight:
     truncated: float
 
 
+_ROUNDING = 1e-11
+
 _ASIDE = np.array([6.1, 3.7, 7.1])
 
 NO_SUNLIGHT = Sunlight([], [], 0.0)
@@ -160,7 +162,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
             around, at = _mouth_prism(beam.mouth, beam.travel)
             for normal, offset in zip(around, at, strict=True):
                 region = polygons.clip(region, normal, offset)
-            region = region[polygons.areas(region) > tolerance**2]
+            region = region[_wide(region, tolerance)]
             if not len(region):
                 continue
         pieces = [(region, np.ones(len(region)))]
@@ -179,7 +181,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
             if not pieces:
                 break
         for polygon, factor in ((p, f) for batch, factors in pieces for p, f in zip(batch, factors, strict=True)):
-            if polygons.areas(polygon) > tolerance**2:
+            if _wide(polygon, tolerance):
                 lux = beam.normal_illuminance * abs(float(cosine[k])) * float(factor)
                 found.append(SunPatch(int(present[k]), bool(cosine[k] < 0), polygon, lux, beam.order))
     return found
@@ -198,17 +200,23 @@ def _shadow(outlines, pieces, blocker, outline, upstream, plane, beam, cosine):
             if not normal.any():
                 continue
             outside = polygons.clip(inside, -normal, -offset)
-            keep = polygons.areas(outside) > outlines.tolerance**2
+            keep = _wide(outside, outlines.tolerance)
             if keep.any():
                 left.append((outside[keep], factors[keep]))
             inside = polygons.clip(inside, normal, offset)
-            lit = polygons.areas(inside) > outlines.tolerance**2
+            lit = _wide(inside, outlines.tolerance)
             inside, factors = inside[lit], factors[lit]
             if not len(inside):
                 break
         if through > 0 and len(inside):
             left.append((inside, factors * through))
     return left
+
+
+def _wide(shapes, tolerance: float) -> np.ndarray:
+    """(...) bool: polygons ``(..., v, 3)`` wider than a length; what is narrower is rounding."""
+    longest = np.linalg.norm(np.roll(shapes, -1, axis=-2) - shapes, axis=-1).max(axis=-1)
+    return polygons.areas(shapes) > tolerance * np.maximum(longest, tolerance)
 
 
 def prism(polygon, travel, cosine) -> tuple[np.ndarray, np.ndarray]:
@@ -230,9 +238,11 @@ def prism(polygon, travel, cosine) -> tuple[np.ndarray, np.ndarray]:
     edge = np.roll(polygon, -1, axis=1) - polygon
     normals = polygons.cross(travel, edge) * np.sign(cosine)[:, None, None]
     length = np.linalg.norm(normals, axis=2, keepdims=True)
-    normals = np.where(length > 0, normals / np.where(length > 0, length, 1.0), 0.0)
+    # corners that differ by rounding alone make no edge
+    true = length > _ROUNDING * np.linalg.norm(edge, axis=2).max(axis=1)[:, None, None]
+    normals = np.where(true, normals / np.where(true, length, 1.0), 0.0)
     offsets = np.einsum("owc,owc->ow", normals, polygon)
-    return normals, np.where(length[:, :, 0] > 0, offsets, -np.inf)
+    return normals, np.where(true[:, :, 0], offsets, -np.inf)
 
 
 def _mouth_prism(mouth: np.ndarray, travel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -281,7 +291,8 @@ def lit_share(triangles, polygon) -> np.ndarray:
     edge = np.roll(polygon, -1, axis=0) - polygon
     inward = polygons.cross(normal, edge)
     length = np.linalg.norm(inward, axis=1)
-    inward, start = inward[length > 0] / length[length > 0, None], polygon[length > 0]
+    true = length > _ROUNDING * length.max()
+    inward, start = inward[true] / length[true, None], polygon[true]
     distance = np.einsum("ntc,ec->nte", triangles, inward) - np.einsum("ec,ec->e", inward, start)
     inside = (distance >= 0).all(axis=(1, 2))
     cut = np.flatnonzero(~inside & (distance > 0).any(axis=1).all(axis=1))
