@@ -157,6 +157,32 @@ def test_clipping_shares_out_the_area(loop, normal, offset):
     assert (up[:, 2] > 0).all(), "orientation stays"
 
 
+NOTCHED = np.array([[0, 0], [2, 0], [2, 1], [4, 1], [4, 3], [3, 3], [3, 4], [0, 4]], float)
+
+
+@pytest.mark.parametrize("first", range(8))
+@pytest.mark.parametrize("turned", [False, True])
+def test_notched_floors(first, turned):
+    """Corners on a grid, where diagonals run exactly through other corners."""
+    loop = np.roll(NOTCHED, first, axis=0) @ (np.array([[0, 1], [-1, 0]]) if turned else np.eye(2))
+    parts = polygons.convex_parts(loop, 1e-9)
+    assert sum(flat_area(part) for part in parts) == pytest.approx(13)
+    assert all(polygons.is_convex(part, 1e-9) for part in parts)
+
+
+@given(st.lists(st.tuples(st.integers(1, 5), st.integers(1, 5)), min_size=1, max_size=6), st.integers(0, 20))
+def test_stairs(steps, first):
+    """Rectilinear loops as plans have them: up and down in whole metres, closed along the axis."""
+    x, corners = 0, [[0.0, 0.0]]
+    for width, height in steps:
+        corners += [[x, height], [x + width, height]]
+        x += width
+    loop = np.roll(np.array([*corners, [x, 0]], float)[::-1], first, axis=0)
+    parts = polygons.convex_parts(loop, 1e-9)
+    assert sum(flat_area(part) for part in parts) == pytest.approx(sum(w * h for w, h in steps))
+    assert all(polygons.is_convex(part, 1e-7) for part in parts)
+
+
 def test_clipping_by_hand():
     batch = regular(4) + np.array([[[0, 0, 0]], [[5, 0, 0]], [[-5, 0, 0]]])
     np.testing.assert_allclose(polygons.areas(polygons.clip(batch, [1, 0, 0])), [1, 2, 0], atol=1e-15)

@@ -98,13 +98,30 @@ def test_patch_factors_are_means_over_elements():
         np.testing.assert_allclose(transfer.patch_factors[number], mean, rtol=1e-4, atol=1e-7)
 
 
-def test_chunks_share_out_the_elements_plane_by_plane():
-    geometry = prepare_coarse(room(), elements=2000).geometry
-    chunks = chunks_of_receivers(geometry, 500)
-    np.testing.assert_array_equal(np.sort(np.concatenate(chunks)), np.arange(len(geometry.element_points)))
+def test_chunks_share_out_the_receivers_plane_by_plane():
+    transfer = prepare_coarse(room(), elements=2000)
+    nodes, planes = transfer.nodes, transfer.geometry.planes
+    chunks = chunks_of_receivers(nodes.points, nodes.sheet, planes, 500)
+    np.testing.assert_array_equal(np.sort(np.concatenate(chunks)), np.arange(len(nodes.points)))
+    assert len(chunks) > len(planes.sheet_surface)
     for chunk in chunks:
-        assert len(np.unique(geometry.fracture.element_sheet[chunk])) == 1
-        assert len(np.unique(geometry.element_normals[chunk], axis=0)) == 1
+        assert len(np.unique(nodes.sheet[chunk])) == 1
+
+
+def test_elements_follow_from_their_nodes():
+    """What is even at the nodes is even on the elements; means stay, and nothing becomes negative."""
+    transfer = prepare_coarse(room(), elements=500)
+    area = transfer.geometry.fracture.element_areas
+    np.testing.assert_allclose(transfer.on_elements(np.ones(len(transfer.nodes.points))), 1)
+    steep = np.exp(-20 * transfer.nodes.points[:, 0])
+    values = transfer.on_elements(steep)
+    assert (values >= 0).all()
+    linear = transfer.nodes.points @ [1.0, 2.0, 3.0] + 20
+    exact = transfer.geometry.element_points @ [1.0, 2.0, 3.0] + 20
+    got = transfer.on_elements(linear)
+    assert area @ got == pytest.approx(area @ exact, rel=1e-12)
+    lone = np.abs(got - exact) > 1e-9  # strips of a single cell know no change across
+    assert lone.mean() < 0.1
 
 
 @pytest.mark.parametrize("threads", [2, 5])

@@ -67,7 +67,7 @@ def test_a_closed_box_shows_no_sky(side, bands):
     points = corner[0] + place[:, :1] * (corner[1] - corner[0]) + place[:, 1:] * (corner[3] - corner[0])
     shares = seen_shares(points, normal, ROOM.values(), bands)
     np.testing.assert_allclose(shares.sum(axis=1), 1, atol=2e-6)
-    np.testing.assert_array_equal(shares[:, -1], 0)
+    np.testing.assert_allclose(shares[:, -1], 0, atol=3e-6)
     assert (shares[:, list(ROOM).index(side)] == 0).all(), "a plane does not see itself"
 
 
@@ -88,7 +88,7 @@ def test_surfaces_through_a_point_block_nothing():
 def test_any_point_in_any_box_sees_exactly_one_of_everything(size, place, normal):
     shares = seen_shares([np.multiply(size, place)], normal, box_polygons(size).values(), 24)
     assert shares.sum() == pytest.approx(1, abs=1e-5)
-    assert shares[0, -1] == 0
+    assert shares[0, -1] < 1e-5
 
 
 def test_shares_in_a_box_are_its_form_factors():
@@ -105,7 +105,7 @@ def test_a_furnished_room_against_rays(point):
     got = seen_shares([point], [0, 0, 1], outlines)[0]
     expected = by_rays(lift(point, [0, 0, 1]), [0, 0, 1], outlines)
     np.testing.assert_allclose(got, expected, atol=8e-4)
-    assert got[-1] == 0
+    assert got[-1] < 3e-6
 
 
 @pytest.mark.parametrize("point", [(0, 1, 1.0), (0, 1.4, 1.45), (0, 2.7, 0.3)])
@@ -145,7 +145,7 @@ def test_edges_shared_by_obstacles_let_nothing_through(columns):
     np.testing.assert_allclose(split[:, :-1].sum(axis=1), whole[:, 0], atol=3e-4)
     walls = [ROOM[k] for k in ("south", "north", "west", "east")]
     closed = seen_shares(points, [0, 0, 1], [*strips, *walls])
-    assert (closed[:, -1] == 0).all()
+    np.testing.assert_allclose(closed[:, -1], 0, atol=3e-6)
     np.testing.assert_allclose(closed.sum(axis=1), 1, atol=2e-6)
 
 
@@ -155,7 +155,7 @@ def test_three_planes_that_meet_leak_nothing():
     top = np.array([0.3, -0.2, 1.5])
     tent = [np.array([foot[k], foot[(k + 1) % 4], top])[::-1] for k in range(4)]
     shares = seen_shares([[0.1, 0.2, 0], [-0.8, 0.7, 0]], [0, 0, 1], tent)
-    np.testing.assert_array_equal(shares[:, -1], 0)
+    np.testing.assert_allclose(shares[:, -1], 0, atol=1e-5)
     np.testing.assert_allclose(shares.sum(axis=1), 1, atol=1e-5)
 
 
