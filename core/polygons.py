@@ -150,25 +150,17 @@ def triangulate(loop) -> np.ndarray:
         prev, here, nxt = p[np.roll(ids, 1)], p[ids], p[np.roll(ids, -1)]
         turn = _cross(here - prev, nxt - here)
         reflex = here[turn <= tiny]
-        best, best_quality = None, -np.inf
-        for k in range(len(ids)):
-            if turn[k] <= tiny:
-                continue
-            a, b, c = prev[k], here[k], nxt[k]
-            if len(reflex):
-                inside = (
-                    (_cross(b - a, reflex - a) >= -tiny)
-                    & (_cross(c - b, reflex - b) >= -tiny)
-                    & (_cross(a - c, reflex - c) >= -tiny)
-                )
-                corner = ((reflex == a) | (reflex == c) | (reflex == b)).all(axis=1)
-                if np.any(inside & ~corner):
-                    continue
-            quality = turn[k] / max(((c - a) ** 2).sum(), 1e-300)
-            if quality > best_quality:
-                best, best_quality = k, quality
-        if best is None:  # only collinear or doubled vertices are left to turn on
-            best = int(np.argmin(np.abs(turn)))
+        ears = [k for k in range(len(ids)) if turn[k] > tiny]
+        # a corner exactly on an ear's outline blocks it only where no other ear is left
+        for margin in (-tiny, tiny, np.inf):
+            free = [k for k in ears if not _blocked(prev[k], here[k], nxt[k], reflex, margin)]
+            if free:
+                break
+        flat = int(np.argmin(np.abs(turn)))
+        if not free or abs(turn[flat]) <= tiny:
+            best = flat  # collinear or doubled
+        else:
+            best = max(free, key=lambda k: turn[k] / max(((nxt[k] - prev[k]) ** 2).sum(), 1e-300))
         m = len(rest)
         triangles.append((rest[best - 1], rest[best], rest[(best + 1) % m]))
         del rest[best]
@@ -176,6 +168,19 @@ def triangulate(loop) -> np.ndarray:
     t = np.array(triangles)
     area = _cross(p[t[:, 1]] - p[t[:, 0]], p[t[:, 2]] - p[t[:, 0]])
     return t[area > tiny]
+
+
+def _blocked(a, b, c, corners, margin: float) -> bool:
+    """Whether a corner other than its own lies in a triangle, by ``margin`` (twice an area) inside each edge."""
+    if not len(corners) or np.isinf(margin):
+        return False
+    inside = (
+        (_cross(b - a, corners - a) >= margin)
+        & (_cross(c - b, corners - b) >= margin)
+        & (_cross(a - c, corners - c) >= margin)
+    )
+    own = (corners == a).all(axis=1) | (corners == b).all(axis=1) | (corners == c).all(axis=1)
+    return bool(np.any(inside & ~own))
 
 
 def convex_parts(loop, tolerance: float) -> list[np.ndarray]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from builders import BLACK, box, box_polygons
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from luzespecular import polygons
@@ -56,6 +56,7 @@ def test_cells_left_out_stay_open(leave_out):
 
 
 @given(st.sets(st.tuples(st.integers(0, 3), st.integers(0, 3)), min_size=0, max_size=15), st.floats(0, 3))
+@example({(3, 3), (2, 0), (3, 0)}, 0.0)
 def test_joining_keeps_the_area_of_any_cells(leave_out, turn):
     vertices, faces = grid(4, 4, 3.0, leave_out)
     spin = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
