@@ -82,10 +82,6 @@ def test_quarter_turns_with_the_sky_change_nothing(base, degrees):
     assert_alike(got, base, 0.02)
 
 
-SLIVERS = "sun patches whose corners differ by rounding alone light nothing, or all: see test_sunlight"
-
-
-@pytest.mark.xfail(strict=True, reason=SLIVERS)
 @FEW
 @given(st.floats(0, 360))
 @example(317.8160840602645)
@@ -94,7 +90,6 @@ def test_any_turn_with_the_sky_changes_no_more_than_the_globe_errs(base, degrees
     assert_alike(lux(room(change=turn), turn(POINTS), turn(NORMALS), light(azimuth=degrees)), base, 0.04)
 
 
-@pytest.mark.xfail(strict=True, reason=SLIVERS)
 @settings(max_examples=5, deadline=None)
 @given(st.floats(0, 360))
 @example(8.09015540508944)

@@ -298,7 +298,6 @@ def test_lit_share_of_all_some_and_none():
     np.testing.assert_allclose(lit_share(triangles, square), [1, 0, 0.75])
 
 
-@pytest.mark.xfail(strict=True, reason="the direction of such an edge is noise, and cuts lit triangles off")
 def test_lit_share_of_polygons_with_doubled_corners():
     """Clipping leaves corners that differ by rounding alone; the edge between them points anywhere, bounds nothing."""
     triangles = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0.0]], [[3, 0, 0], [4, 0, 0], [3, 1, 0.0]]])
