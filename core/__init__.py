@@ -1,5 +1,6 @@
 """LuzEspecular: daylight illuminance, mirrors and glass included, by the Spherical Vector Model."""
 
+from . import solve as _solve  # noqa: F401 - before the function of this name, which a later import would hide
 from .availability import availability, default_daylight
 from .balance import Balance
 from .daylight import Daylight

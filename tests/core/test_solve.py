@@ -195,9 +195,6 @@ def test_solving_again_gives_the_same_and_leaves_the_transfer_alone(transfer):
     np.testing.assert_array_equal(transfer.sky_direct, kept[1])
 
 
-@pytest.mark.xfail(
-    strict=True, raises=TypeError, reason="once the room `solve` is imported, it hides the function `solve`"
-)
 def test_both_steps_in_one():
     scene = box(WHITE, without=("ceiling",))
     seen = []
