@@ -320,19 +320,11 @@ class GroupSight:
                 material = self.outlines.materials[o]
                 if not (material.is_specular or material.is_transparent):
                     continue
-                here = outline[met] == o
-                here_rays, here_place = rays.take(met[here]), place[here]
+                here = np.flatnonzero(outline[met] == o)
+                here_rays = rays.take(met[here])
                 cosine = here_rays.directions @ self.outlines.normals[o]
-                for front in (True, False):
-                    side = np.flatnonzero((cosine < 0) == front)
-                    for kind, share in self._ways(material, o, front, cosine[side]):
-                        onward.append(
-                            here_rays.take(side).onward(here_place[side], share, self.outlines.normals[o], kind)
-                        )
+                onward += self._onward(here_rays, place[here], int(o), cosine < 0, cosine, truncated)
             rays = _Rays.joined(onward)
-            kept = (rays.throughput >= self.limits.cutoff) & (rays.depth < DEEPEST_CHAIN)
-            np.add.at(truncated, rays.rows[~kept], rays.weights[~kept])
-            rays = rays.take(np.flatnonzero(kept))
 
     def _cut(self, chain, half_spaces) -> Obstacles:
         if chain not in self._obstacles:
@@ -347,12 +339,13 @@ class GroupSight:
             material = self.outlines.materials[o]
             if not (material.is_specular or material.is_transparent):
                 continue
-            if parts is None:
-                parts = s.part_weights()
-            arriving = self._arriving(s, k, parts)
-            if arriving is None:
+            parts = s.part_weights() if parts is None else parts
+            self._continue_parts(s, k, parts, throughput, len(chain), truncated, left)
+            if k not in s.view.columns:
                 continue
-            cosine = s.beams.directions @ s.obstacles.normals[k]
+            seen = s.view.columns[k]
+            arriving = np.where(s.view.seen[:, seen] == k, s.weights[:, seen], 0.0)
+            cosine = s.beams.directions[seen] @ s.obstacles.normals[k]
             normal, offset = self.outlines.normals[o], float(self.outlines.offsets[o])
             for front in (True, False):
                 side = (s.view.heights[:, k] < 0) == front
@@ -369,7 +362,7 @@ class GroupSight:
                     if product < self.limits.cutoff or len(chain) >= DEEPEST_CHAIN:
                         truncated[s.rows[rows]] += onward.sum(axis=1)
                         continue
-                    beams, points = s.beams.take(columns), s.points[rows]
+                    beams, points = s.beams.take(seen[columns]), s.points[rows]
                     if kind == "mirror":
                         facing = 1.0 if front else -1.0
                         beams = beams.reflected(normal)
@@ -378,44 +371,60 @@ class GroupSight:
                     else:
                         facing = -1.0 if front else 1.0
                         ahead, past = horizon, HalfSpace(facing * normal, facing * offset)
+                    mirrored = s.mirrored or kind == "mirror"
                     if chain and lit < _FEW_BEAMS:
-                        start = points if kind == "mirror" else s.points[rows]
                         left.append(
                             _Rays.beyond(
-                                s.rows[rows],
-                                start,
-                                beams.directions,
-                                onward,
-                                product,
-                                s.mirrored or kind == "mirror",
-                                past,
-                                len(chain) + 1,
+                                s.rows[rows], points, beams.directions, onward, product, mirrored, past, len(chain) + 1
                             )
                         )
                         continue
                     following.append(
-                        (
-                            s.rows[rows],
-                            points,
-                            ahead,
-                            (past,),
-                            beams,
-                            onward,
-                            product,
-                            s.mirrored or kind == "mirror",
-                            (*chain, step),
-                        )
+                        (s.rows[rows], points, ahead, (past,), beams, onward, product, mirrored, (*chain, step))
                     )
         return following
 
-    def _arriving(self, s: Sighting, k: int, parts: np.ndarray) -> np.ndarray | None:
-        whole = s.view.seen == k
-        mine = np.flatnonzero(s.view.part_seen == k)
-        if not whole.any() and not len(mine):
-            return None
-        arriving = np.where(whole, s.weights, 0.0)
-        arriving[s.view.part_row[mine], s.view.part_beam[mine]] += parts[mine]
-        return arriving
+    def _continue_parts(self, s: Sighting, k: int, parts, throughput: float, depth: int, truncated, left: list) -> None:
+        """Carry parts of beams on as single rays from their own centres.
+
+        A whole beam stands for its centre, which may miss the mirror or pane that an edge cuts the part from.
+        """
+        view, o = s.view, s.obstacles.outlines[k]
+        mine = np.flatnonzero((view.part_seen == k) & (parts > 0))
+        if not len(mine):
+            return
+        row = view.part_row[mine]
+        height, towards = view.heights[row, k], view.part_direction[mine]
+        ahead = height / (towards @ s.obstacles.normals[k])
+        # centres are good to first order only: where edges meet, one may lie beside what it is the centre of
+        places = self.outlines.rays.pulled_inside(int(o), s.points[row] + ahead[:, None] * towards)
+        directions = places - s.points[row]
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        cosine = directions @ s.obstacles.normals[k]
+        rays = _Rays(
+            s.rows[row],
+            places,
+            directions,
+            parts[mine],
+            np.full(len(mine), throughput),
+            np.full(len(mine), s.mirrored),
+            np.full(len(mine), depth),
+        )
+        left += self._onward(rays, places, int(o), height < 0, cosine, truncated)
+
+    def _onward(self, rays: _Rays, places, o: int, front, cosine, truncated) -> list[_Rays]:
+        """Rays that met an outline at ``places``, after it: those bright enough to follow."""
+        onward = []
+        for side in (True, False):
+            mine = np.flatnonzero(front == side)
+            if not len(mine):
+                continue
+            for kind, share in self._ways(self.outlines.materials[o], o, side, cosine[mine]):
+                after = rays.take(mine).onward(places[mine], share, self.outlines.normals[o], kind)
+                kept = (after.throughput >= self.limits.cutoff) & (after.depth < DEEPEST_CHAIN)
+                np.add.at(truncated, after.rows[~kept], after.weights[~kept])
+                onward.append(after.take(np.flatnonzero(kept)))
+        return onward
 
     def _ways(self, material: Material, o: int, front: bool, cosine: np.ndarray):
         if material.is_specular and (front or self.outlines.two_sided[o] or material.reflects_both_sides):
