@@ -13,6 +13,9 @@ from .globe import Hemisphere
 UNTURNED = np.eye(3)
 """What beams that met no mirror are turned by."""
 
+_NO_WIDTH = 1e-100
+"""Stands for widths of nought: its cube is still a number."""
+
 
 @dataclass(frozen=True, eq=False)
 class Beams:
@@ -218,7 +221,7 @@ def coverage(distance, width_a, width_b) -> tuple[np.ndarray, np.ndarray]:
     moment : (n,) float
         Share times the distance of its centroid from the rectangle's centre, along the line's normal.
     """
-    floor = np.maximum(1e-4 * (width_a + width_b), 1e-300)
+    floor = np.maximum(1e-4 * (width_a + width_b), _NO_WIDTH)
     p, q = np.maximum(width_a, floor), np.maximum(width_b, floor)
     alpha, beta = 0.5 * (p + q), 0.5 * np.abs(p - q)
     s = np.clip(distance, -alpha, alpha)

@@ -35,6 +35,9 @@ _SEAM = 1e-4
 _WELL_BEHIND = 1.05
 """How much farther than a wholly seen obstacle a corner must be to be hidden without a closer look."""
 
+_BACKS_LAST = 1e-6
+"""How much farther than they are backs stand: where two sides of a solid meet, the one that faces a receiver shows."""
+
 _ALIGNED = 0.99
 """Cosine between edges that count as parallel within one beam."""
 
@@ -101,6 +104,7 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
     seen = np.full((rows, count), OPEN, np.int32)
     nearest = np.full((rows, count), np.inf, np.float32)
     planes, heights = edge_planes(points, obstacles, tolerance)
+    heights[heights > 0] *= 1 + _BACKS_LAST
     reach = beams.reach * 1.01 + 1e-6
     hull = _bounding_corners(points)
     slopes = beams.directions @ obstacles.normals.T
@@ -108,6 +112,7 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
     found = []
     width = obstacles.bounding.shape[1]
     possible: dict[int, np.ndarray] = {}
+    within: dict[int, np.ndarray] = {}
     for o in range(len(obstacles.outlines)):
         bounded = obstacles.bounding[o]
         columns, certain = _columns_within(hull, obstacles.vertices[o], bounded, heights[:, o], beams.directions, reach)
@@ -134,6 +139,7 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
                 for edge, values in zip(np.flatnonzero(bounded), sines, strict=True):
                     sine[:, edge] = values.ravel()[near]
                 found.append((row, columns[column], np.full(len(row), o), sine))
+                within[o] = columns
         else:
             whole = np.ones(distance.shape, bool)
         before = nearest[:, columns]
@@ -148,9 +154,11 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
     candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
     planes = planes.astype(np.float32)
-    return _settle_parts(
-        seen, nearest, possible, candidates, planes, heights, np.asarray(normal, float), beams, obstacles
-    )
+    candidates = _Candidates.of(*candidates, planes, heights, beams)
+    for o in _settle_whole(seen, nearest, candidates, heights, slopes):
+        possible.setdefault(int(o), within[int(o)])
+    crossed = _crossings(seen, candidates, heights, beams, obstacles)
+    return _settle_parts(seen, nearest, possible, crossed, planes, heights, np.asarray(normal, float), beams, obstacles)
 
 
 def _distance_to(plane: HalfSpace, points: np.ndarray, directions: np.ndarray) -> np.ndarray:
@@ -238,9 +246,8 @@ class _Crossed:
 
 
 def _settle_parts(
-    seen, nearest, possible, candidates, planes, heights, normal, beams: Beams, obstacles: Obstacles
+    seen, nearest, possible, crossed: _Crossed, planes, heights, normal, beams: Beams, obstacles: Obstacles
 ) -> View:
-    crossed = _crossings(seen, candidates, planes, heights, beams, obstacles)
     if not len(crossed.row):
         empty = np.zeros(0, np.int64)
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
@@ -347,22 +354,73 @@ def _group_sums(values: np.ndarray, starts: np.ndarray, which: np.ndarray) -> np
     return np.add.reduceat(values[rows], np.cumsum(sizes) - sizes, axis=0)
 
 
-def _crossings(seen, candidates, planes, heights, beams: Beams, obstacles: Obstacles) -> _Crossed:
+@dataclass(frozen=True, eq=False)
+class _Candidates:
+    """Obstacles that beams may be crossed by, one row each (n); and the edges that cross (m).
+
+    Attributes
+    ----------
+    row, beam, obstacle : (n,) int
+    sine : (n, w) float32
+    outside : (n,) bool
+        The beam passes beside the obstacle.
+    edges : (n,) int
+        How many edges cross the beam; where none does, it meets the obstacle wholly or not at all.
+    pair : (m,) int
+        Which candidate an edge belongs to.
+    normal : (m, 3) float32
+    across : (m, 2) float32
+        The beam's sides, projected on the edge's normal.
+    place : (m,) float32
+    """
+
+    row: np.ndarray
+    beam: np.ndarray
+    obstacle: np.ndarray
+    sine: np.ndarray
+    outside: np.ndarray
+    edges: np.ndarray
+    pair: np.ndarray
+    normal: np.ndarray
+    across: np.ndarray
+    place: np.ndarray
+
+    @classmethod
+    def of(cls, row, beam, obstacle, sine, planes, heights, beams: Beams) -> _Candidates:
+        """Find the edges that really cross the beams: by their own shape, not the circle around them."""
+        reach = beams.reach.astype(np.float32)[beam]
+        pair, edge = np.nonzero(np.abs(sine) < reach[:, None])
+        normal = planes[row[pair], obstacle[pair], edge]
+        across = np.abs(np.matmul(beams.spans[beam[pair]], normal[:, :, None])[:, :, 0])
+        place = sine[pair, edge]
+        support = np.where(beams.odd[beam[pair]], reach[pair], 0.5 * (across[:, 0] + across[:, 1]))
+        outside = (sine <= -reach[:, None]).any(axis=1) | (heights[row, obstacle] == 0)
+        outside[pair[place <= -support]] = True
+        crossing = np.abs(place) < support
+        pair = pair[crossing]
+        edges = np.bincount(pair, minlength=len(row))
+        return cls(row, beam, obstacle, sine, outside, edges, pair, normal[crossing], across[crossing], place[crossing])
+
+
+def _settle_whole(seen, nearest, candidates: _Candidates, heights, slopes) -> np.ndarray:
+    """Enter obstacles that no edge parts from a beam into ``seen`` and ``nearest``, in place; gives their numbers."""
+    whole = np.flatnonzero((candidates.edges == 0) & ~candidates.outside)
+    row, beam, obstacle = candidates.row[whole], candidates.beam[whole], candidates.obstacle[whole]
+    with np.errstate(divide="ignore", over="ignore"):
+        distance = (heights[row, obstacle] / slopes[beam, obstacle]).astype(np.float32)
+    ahead = np.flatnonzero((distance > 0) & (distance < nearest[row, beam]))
+    ahead = ahead[np.argsort(-distance[ahead], kind="stable")]  # the nearest is written last
+    seen[row[ahead], beam[ahead]] = obstacle[ahead]
+    nearest[row[ahead], beam[ahead]] = distance[ahead]
+    return np.unique(obstacle[ahead])
+
+
+def _crossings(seen, candidates: _Candidates, heights, beams: Beams, obstacles: Obstacles) -> _Crossed:
     """Candidates that edges really cross, with the share that one edge alone leaves them."""
-    row, beam, obstacle, sine = candidates
-    reach = beams.reach.astype(np.float32)[beam]
-    pair, edge = np.nonzero(np.abs(sine) < reach[:, None])
-    normal = planes[row[pair], obstacle[pair], edge]
-    across = np.abs(np.matmul(beams.spans[beam[pair]], normal[:, :, None])[:, :, 0])
-    place = sine[pair, edge]
-    support = np.where(beams.odd[beam[pair]], reach[pair], 0.5 * (across[:, 0] + across[:, 1]))
-    outside = (sine <= -reach[:, None]).any(axis=1)
-    outside[pair[place <= -support]] = True
-    crossing = np.abs(place) < support
-    pair, normal, across, place = pair[crossing], normal[crossing], across[crossing], place[crossing]
-    edges = np.bincount(pair, minlength=len(row))
+    row, beam, obstacle, edges = candidates.row, candidates.beam, candidates.obstacle, candidates.edges
+    pair, normal = candidates.pair, candidates.normal
     offset = np.zeros((len(row), 3), np.float32)
-    covered, moment = coverage(place.astype(float), *across.T.astype(float))
+    covered, moment = coverage(candidates.place.astype(float), *candidates.across.T.astype(float))
     # exact for one edge, and near enough where edges meet at a corner
     share = np.exp(np.bincount(pair, weights=np.log(np.maximum(covered, 1e-30)), minlength=len(row)))
     offset[pair] = (moment / np.maximum(covered, 1e-12))[:, None] * normal
@@ -377,7 +435,7 @@ def _crossings(seen, candidates, planes, heights, beams: Beams, obstacles: Obsta
     lone = edges[pair] == 1
     edge_sum[pair[lone]] = normal[lone]
     np.add.at(edge_sum, pair[~lone], normal[~lone])
-    keep = np.flatnonzero(~outside & (heights[row, obstacle] != 0) & ~behind)
+    keep = np.flatnonzero(~candidates.outside & (edges > 0) & ~behind)
     key = row[keep] * len(beams.directions) + beam[keep]
     order = np.lexsort((distance[keep], key))
     group = np.cumsum(np.diff(key[order], prepend=key[order[:1]]) > 0)
@@ -386,7 +444,7 @@ def _crossings(seen, candidates, planes, heights, beams: Beams, obstacles: Obsta
         row[keep],
         beam[keep],
         obstacle[keep],
-        sine[keep],
+        candidates.sine[keep],
         share[keep],
         offset[keep],
         distance[keep],
