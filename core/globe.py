@@ -44,6 +44,26 @@ class Globe:
         if not 2 <= self.bands <= MAX_BANDS:
             raise SceneError(f"bands must lie between 2 and {MAX_BANDS}, not {self.bands}; 60 is usual")
 
+    @classmethod
+    def cut_at_horizon(cls, bands: int) -> Globe:
+        """Globe of ``bands`` bands, or one more, so that the horizon is a limit between two of them.
+
+        Parameters
+        ----------
+        bands : int
+
+        Returns
+        -------
+        Globe
+
+        Raises
+        ------
+        SceneError
+            As for the globe itself.
+        """
+        globe = cls(bands)
+        return globe if bands % 2 == 0 else cls(bands + 1)
+
     @cached_property
     def parcels_in_band(self) -> np.ndarray:
         """(bands,) int: parcels in each band, from the zenith down."""

@@ -189,6 +189,15 @@ def test_planes_along_the_parcels_have_exact_weights(normal):
     assert half.weights[whole].sum() > 0.99
 
 
+@pytest.mark.parametrize(("asked", "got"), [(2, 2), (3, 4), (60, 60), (61, 62)])
+def test_a_globe_cut_at_the_horizon(asked, got):
+    globe = Globe.cut_at_horizon(asked)
+    assert globe.bands == got
+    assert np.abs(np.cos(globe.polar_edges)).min() < 1e-15
+    with pytest.raises(SceneError, match="bands must"):
+        Globe.cut_at_horizon(61.0)
+
+
 @pytest.mark.parametrize("bands", [0, 1, -60, 2001, 60.0, 2.5, "60", True, None])
 def test_bands_out_of_range(bands):
     with pytest.raises(SceneError, match="bands must"):
