@@ -148,7 +148,7 @@ def prepare(
     ----------
     scene : Scene
     bands : int
-        Bands of the globe; 60 gives 5,902 parcels.
+        Bands of the globe; 60 gives 5,902 parcels. An odd number is raised by one.
     max_area : float, optional
         Largest area of a face [m²]. None = chosen for the scene, some 10,000 faces; inf = faces as given, only
         triangulated. Purely specular and black surfaces are not cut for their size.
@@ -173,7 +173,7 @@ def prepare(
         Where ``progress`` says so.
     """
     max_area, specular_cutoff, threads, memory = _checked_options(scene, max_area, specular_cutoff, threads, memory)
-    globe = Globe(bands)
+    globe = Globe.cut_at_horizon(bands)  # a parcel is sky or ground, never both
     recorder = Recorder(progress)
     with recorder.stage("planes", 0.0):
         planes = find_planes(scene)
