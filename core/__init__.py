@@ -10,8 +10,18 @@ from .materials import Material
 from .result import Result
 from .scene import Scene
 from .sky import CIESky, MeasuredSky, PerezSky, UniformSky
-from .sun import Sun, sun_position, sun_position_solar
+from .sun import (
+    Sun,
+    declination,
+    equation_of_time,
+    solar_time,
+    sun_position,
+    sun_position_solar,
+    sunrise_sunset,
+)
 from .transfer import Transfer, prepare
+
+__version__ = "0.1.0"
 
 
 def solve(scene: Scene, light: Daylight, **prepare_options) -> Result:
@@ -35,10 +45,15 @@ __all__ = [
     "Sun",
     "Transfer",
     "UniformSky",
+    "__version__",
     "availability",
+    "declination",
     "default_daylight",
+    "equation_of_time",
     "prepare",
+    "solar_time",
     "solve",
     "sun_position",
     "sun_position_solar",
+    "sunrise_sunset",
 ]

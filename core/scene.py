@@ -112,7 +112,7 @@ class Scene:
 def _vertices(name: str, vertices, mesh: bool) -> np.ndarray:
     try:
         points = np.array(vertices, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise SceneError(f"Surface '{name}': vertices must be an (n, 3) array of numbers") from None
     if points.ndim != 2 or points.shape[1] != 3:
         raise SceneError(f"Surface '{name}': vertices must be an (n, 3) array, not of shape {points.shape}")

@@ -8,7 +8,6 @@ argument, 130 interrupted. The .blend that was opened is never written to.
 from __future__ import annotations
 
 import argparse
-import datetime as dt
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +16,8 @@ import bpy
 from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import core as luz
-from . import job, light, notices, session, study, tables
+from ..core import files, tables, terminal
+from . import job, light, notices, session, study
 
 # Options that set one number each: option, settings group, property, explanation.
 _NUMBERS = (
@@ -92,8 +92,8 @@ def parser() -> argparse.ArgumentParser:
     add = solve.add_argument
     add("--out", type=Path, required=True, metavar="FOLDER", help="where to write; made if absent")
     add("--scene", metavar="NAME", help="scene to solve (default: the active one)")
-    add("--hours", type=_hours, metavar="H[,H…]", help="hours of the day, e.g. 9,10.5,12:15")
-    add("--date", type=_date, metavar="YYYY-MM-DD", help="date")
+    add("--hours", type=terminal.hours_of_day, metavar="H[,H…]", help="hours of the day, e.g. 9,10.5,12:15")
+    add("--date", type=terminal.iso_date, metavar="YYYY-MM-DD", help="date")
     add("--time", choices=("solar", "clock"), help="what the hours mean")
     add("--sky", choices=("clear", "intermediate", "overcast", "cie", "none"), help="sky")
     add("--cie-type", type=int, choices=range(1, 17), metavar="1…16", help="CIE sky (sets --sky cie)")
@@ -123,16 +123,16 @@ def _solve(options: argparse.Namespace) -> int:
             result = _run(planned)
             study.finish(bpy.context, planned, result)
             rows = _print_table(planned, result)
-            moment = f"{light.date_of(settings.site).isoformat()} {light.clock(hour)}"
+            moment = f"{light.date_of(settings.site).isoformat()} {terminal.clock(hour)}"
             overview += [(moment, settings.site.time_kind.lower(), *tables.surface_row(row)) for row in rows]
             name = f"{stem}_{moment.replace(' ', '_').replace(':', 'h')}"
             if not options.no_faces:
                 header, faces = tables.face_rows(result, dict.fromkeys(row.name for row in rows))
-                _written(tables.write_csv(options.out / f"{name}_faces.csv", header, faces))
+                _written(files.write_csv(options.out / f"{name}_faces.csv", header, faces))
             if not options.no_blend:
                 _written(_save_blend(options.out / f"{name}.blend"))
     header = ("moment", "time", *tables.SURFACE_HEADER)
-    _written(tables.write_csv(options.out / f"{stem}_surfaces.csv", header, overview))
+    _written(files.write_csv(options.out / f"{stem}_surfaces.csv", header, overview))
     return 0
 
 
@@ -183,10 +183,12 @@ def _apply(options: argparse.Namespace, settings: bpy.types.PropertyGroup) -> No
 def _run(planned: study.Study) -> luz.Result:
     running = job.Job(planned, session.current)
     running.start()
-    show = _Progress()
+    show = terminal.Progress()
     try:
         while not running.finished:
-            show(running.latest(timeout=0.1))
+            latest = running.latest(timeout=0.1)
+            if latest is not None:
+                show(*latest)
     except KeyboardInterrupt:
         running.cancel()
         running.wait()
@@ -198,43 +200,10 @@ def _run(planned: study.Study) -> luz.Result:
     return running.result
 
 
-class _Progress:
-    """Progress on the terminal: one line written over, or a line for every tenth where that goes to a file."""
-
-    def __init__(self):
-        self._terminal = sys.stderr.isatty()
-        self._told = -1
-
-    def __call__(self, latest: tuple[float, str] | None) -> None:
-        if latest is None:
-            return
-        percent = int(100.0 * latest[0])
-        step = percent if self._terminal else percent // 10
-        if step != self._told:
-            self._told = step
-            text = f"{percent:3d} %  {latest[1]}"
-            print(
-                f"\r{text:<60}" if self._terminal else text,
-                end="" if self._terminal else "\n",
-                file=sys.stderr,
-                flush=True,
-            )
-
-    def end(self) -> None:
-        """Finish the line."""
-        if self._terminal and self._told >= 0:
-            print(file=sys.stderr)
-
-
 def _print_table(planned: study.Study, result: luz.Result) -> list[tables.SurfaceStatistics]:
     receivers = [surface.name for surface in planned.export.surfaces if surface.receiver]
     rows = tables.surface_statistics(result, receivers)
-    names = [row.name if row.side == "front" else f"{row.name} (back)" for row in rows]
-    width = max([len(name) for name in names], default=0)
-    print(f"\n{planned.title}; {len(result.illuminance)} faces")
-    print(f"{'':<{width}} {'minimum':>10} {'mean':>10} {'maximum':>10} {'uniformity':>11}   [lx]")
-    for name, row in zip(names, rows, strict=True):
-        print(f"{name:<{width}} {row.minimum:10.1f} {row.mean:10.1f} {row.maximum:10.1f} {row.uniformity:11.3f}")
+    terminal.print_statistics(f"{planned.title}; {len(result.illuminance)} faces", rows)
     return rows
 
 
@@ -265,27 +234,6 @@ def _tell(remarks) -> None:
 def _failed(reason: str) -> int:
     print(f"luzespecular: failed: {reason}", file=sys.stderr)
     return 1
-
-
-def _hours(text: str) -> list[float]:
-    hours = []
-    for part in text.split(","):
-        try:
-            whole, _, minutes = part.strip().partition(":")
-            hour = float(whole) + (float(minutes) / 60.0 if minutes else 0.0)
-        except ValueError:
-            raise argparse.ArgumentTypeError(f"'{part}' is no hour: write 9, 10.5 or 12:15") from None
-        if not 0.0 <= hour <= 24.0:
-            raise argparse.ArgumentTypeError(f"'{part}' is no hour of a day: give 0 to 24")
-        hours.append(hour)
-    return hours
-
-
-def _date(text: str) -> dt.date:
-    try:
-        return dt.date.fromisoformat(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is no date: write it as 2026-06-22") from None
 
 
 def _number(group: str, name: str):

@@ -84,12 +84,6 @@ def _hour_of(instant: dt.datetime, site: bpy.types.PropertyGroup, longitude: flo
     return (utc + as_typed(site.time_zone)) % 24.0
 
 
-def clock(hour: float) -> str:
-    """Return an hour of the day as hh:mm."""
-    minutes = round(hour * 60.0)
-    return f"{minutes // 60:02d}:{minutes % 60:02d}"
-
-
 def daylight(scene: bpy.types.Scene) -> tuple[luz.Daylight, list[Notice]]:
     """Return the light that a scene's settings describe, and what the user should know about it.
 

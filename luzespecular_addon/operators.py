@@ -9,7 +9,8 @@ from bpy.app.translations import pgettext_rpt as rpt_
 from bpy_extras.io_utils import ExportHelper
 
 from .. import core as luz
-from . import display, materials, session, study, tables
+from ..core import files, tables
+from . import display, materials, session, study
 from .job import Job
 from .notices import BadInput
 
@@ -222,7 +223,7 @@ class LUZESPECULAR_OT_save_table(bpy.types.Operator, ExportHelper):
             for row in context.scene.luzespecular.results.rows
         )
         try:
-            tables.write_csv(Path(self.filepath), tables.SURFACE_HEADER, rows)
+            files.write_csv(Path(self.filepath), tables.SURFACE_HEADER, rows)
         except OSError as error:
             self.report({"ERROR"}, rpt_("The table could not be saved: {error}").format(error=error))
             return {"CANCELLED"}

@@ -8,6 +8,7 @@ import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
 from .. import core as luz
+from ..core.terminal import clock
 from . import display, light, materials
 from .notices import BadInput
 
@@ -232,7 +233,7 @@ def _draw_sun(column: bpy.types.UILayout, site: bpy.types.PropertyGroup, width: 
     if not place.is_up:
         _draw_wrapped(column, iface_("The Sun is below the horizon: only the sky is solved"), "INFO", width)
     if rise is not None and fall is not None:
-        text = iface_("Sunrise {rise}, sunset {fall}").format(rise=light.clock(rise), fall=light.clock(fall))
+        text = iface_("Sunrise {rise}, sunset {fall}").format(rise=clock(rise), fall=clock(fall))
         column.label(text=text, icon="BLANK1", translate=False)
     else:
         column.label(text="The Sun neither rises nor sets", icon="BLANK1")

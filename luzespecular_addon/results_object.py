@@ -10,7 +10,8 @@ import bpy
 import numpy as np
 
 from .. import core as luz
-from . import mesh_arrays, tables
+from ..core import tables
+from . import mesh_arrays
 from .export import Export
 
 NAMES = {"front": "LuzEspecular results", "back": "LuzEspecular results (backs)"}

@@ -13,7 +13,9 @@ from bpy.app.translations import pgettext_iface as iface_
 from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import core as luz
-from . import display, export, light, results_object, session, tables, writeback
+from ..core import tables
+from ..core.terminal import clock
+from . import display, export, light, results_object, session, writeback
 from .choices import SKY_ITEMS
 from .materials import as_typed
 from .notices import Notice, refuse, stop_on_errors
@@ -86,7 +88,7 @@ def collect(context: bpy.types.Context, exported: export.Export | None = None) -
             "There is no light at {hour}: the Sun is down or off, there is no sky, no surface is luminous. "
             "Set hour or sky"
         )
-        raise refuse(text.format(hour=light.clock(scene.luzespecular.site.hour)))
+        raise refuse(text.format(hour=clock(scene.luzespecular.site.hour)))
     return Study(
         exported,
         daylight,
@@ -126,7 +128,7 @@ def title(scene: bpy.types.Scene) -> str:
     site, sky = settings.site, settings.sky
     kind = next(name for key, name, _ in SKY_ITEMS if key == sky.kind)
     time = iface_("solar time") if site.time_kind == "SOLAR" else iface_("clock time")
-    return f"{light.date_of(site).isoformat()}, {light.clock(site.hour)} {time}, {iface_(kind, CONTEXT)}"
+    return f"{light.date_of(site).isoformat()}, {clock(site.hour)} {time}, {iface_(kind, CONTEXT)}"
 
 
 def _options(accuracy: bpy.types.PropertyGroup, area: float) -> dict:

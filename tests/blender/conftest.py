@@ -27,7 +27,6 @@ ROOMS = (
     "results_object",
     "session",
     "study",
-    "tables",
     "translations",
     "writeback",
 )

@@ -120,10 +120,3 @@ def test_sunrise_and_sunset_in_both_kinds_of_time(addon, settings):
     assert clock_rise - rise == pytest.approx(2 / 60, abs=0.01)  # the equation of time
     settings.site.latitude = 80.0
     assert addon.light.sunrise_sunset(settings.site) == (None, None)
-
-
-@pytest.mark.parametrize(
-    ("hour", "text"), [(9.5, "09:30"), (0.0, "00:00"), (23.999, "24:00"), (24.0, "24:00"), (12.991, "12:59")]
-)
-def test_clock_face(addon, hour, text):
-    assert addon.light.clock(hour) == text

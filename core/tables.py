@@ -1,17 +1,14 @@
-"""Results as tables: statistics per surface, and CSV files that spreadsheets open. No bpy."""
+"""Results as tables: statistics per surface, rows of faces, and arrays."""
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import core as luz
-from ..core.result import Side
+from .result import Result, Side
 
 
 @dataclass(frozen=True)
@@ -41,7 +38,7 @@ class SurfaceStatistics:
         return self.minimum / self.mean if self.mean > 0.0 else float("nan")
 
 
-def computed_faces(result: luz.Result, names: Iterable[str]) -> Iterator[tuple[str, str, Side, NDArray[np.intp]]]:
+def computed_faces(result: Result, names: Iterable[str]) -> Iterator[tuple[str, str, Side, NDArray[np.intp]]]:
     """Yield name, "front" or "back", that side's arrays and its faces for each side of the surfaces that has values."""
     for name in names:
         faces = result.faces_of(name)
@@ -52,7 +49,7 @@ def computed_faces(result: luz.Result, names: Iterable[str]) -> Iterator[tuple[s
                     yield name, label, side, known
 
 
-def surface_statistics(result: luz.Result, names: Iterable[str]) -> list[SurfaceStatistics]:
+def surface_statistics(result: Result, names: Iterable[str]) -> list[SurfaceStatistics]:
     """Return the statistics of each side of the surfaces, in the order of `names`."""
     rows = []
     for name, label, side, faces in computed_faces(result, names):
@@ -70,40 +67,47 @@ def quantities(side: Side) -> dict[str, NDArray[np.float64]]:
 SURFACE_HEADER = ("surface", "side", "area_m2", "minimum_lx", "mean_lx", "maximum_lx", "uniformity")
 
 
-def surface_row(row: SurfaceStatistics) -> tuple[str, ...]:
+def surface_row(row: SurfaceStatistics) -> tuple[str | float, ...]:
     """Return a row for `SURFACE_HEADER`."""
-    numbers = (row.area, row.minimum, row.mean, row.maximum, row.uniformity)
-    return (row.name, row.side, *(_number(value) for value in numbers))
+    return (row.name, row.side, row.area, row.minimum, row.mean, row.maximum, row.uniformity)
 
 
-def face_rows(result: luz.Result, names: Iterable[str]) -> tuple[list[str], Iterator[list[str]]]:
+def face_rows(result: Result, names: Iterable[str]) -> tuple[list[str], Iterator[list[str | float]]]:
     """Return header and rows of the solver's faces: surface, side, centroid [m], normal, area [m²], lux by origin."""
     header = ["surface", "side", "x_m", "y_m", "z_m", "normal_x", "normal_y", "normal_z", "area_m2"]
     header += [f"{quantity}_lx" for quantity in quantities(result.front)]
 
-    def rows() -> Iterator[list[str]]:
+    def rows() -> Iterator[list[str | float]]:
         for name, label, side, faces in computed_faces(result, names):
             columns = [side.centroids[faces], side.normals[faces], side.areas[faces]]
             columns += [values[faces] for values in quantities(side).values()]
-            for row in np.column_stack(columns):
-                yield [name, label, *map(_number, row)]
+            for row in np.column_stack(columns).tolist():
+                yield [name, label, *row]
 
     return header, rows()
 
 
-def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[str]]) -> Path:
-    """Write a CSV file (UTF-8 with signature, so that spreadsheets read accents) that appears only when complete."""
-    unfinished = path.with_name(path.name + ".part")
-    try:
-        with unfinished.open("w", encoding="utf-8-sig", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(header)
-            writer.writerows(rows)
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
-    return path
+def arrays(result: Result) -> dict[str, NDArray]:
+    """Return all that is known of the faces: corners [m], surfaces, and the quantities of fronts and backs.
 
-
-def _number(value: float) -> str:
-    return "" if np.isnan(value) else f"{value:.7g}"
+    ``surface`` holds indices into ``surfaces``, the names; names of backs' quantities begin with ``back_``, and are
+    NaN where that side receives nothing.
+    """
+    surface = np.empty(len(result.areas), np.int64)
+    for number, name in enumerate(result.surfaces):
+        surface[result.faces_of(name)] = number
+    known: dict[str, NDArray] = {
+        "surfaces": np.array(result.surfaces),
+        "surface": surface,
+        "source_face": result.source_faces,
+        "vertices": result.vertices,
+        "centroids": result.centroids,
+        "normals": result.normals,
+        "areas": result.areas,
+        "exitance": result.exitance,
+        **quantities(result.front),
+    }
+    if result.back is not None:
+        known["back_exitance"] = result.back.exitance
+        known |= {f"back_{name}": values for name, values in quantities(result.back).items()}
+    return known
