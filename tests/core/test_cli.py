@@ -3,6 +3,9 @@
 import csv
 import datetime as dt
 import json
+import signal
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -235,3 +238,22 @@ def test_one_version_everywhere(capsys):
 )
 def test_hours_read_well(hour, text):
     assert terminal.clock(hour) == text
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for a single process")
+def test_control_c_ends_a_run_that_is_under_way(tmp_path):
+    room = ROOT / "examples" / "light_shelf" / "light_shelf.json"
+    arguments = ["solve", str(room), "--out", str(tmp_path / "out"), *SITE, "--bands", "90"]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "luzespecular.cli", *arguments], stderr=subprocess.PIPE, text=True
+    )
+    try:
+        while "visibility" not in running.stderr.readline():
+            assert running.poll() is None
+        running.send_signal(signal.SIGINT)
+        _, said = running.communicate(timeout=30)
+    finally:
+        running.kill()
+    assert running.returncode == 130
+    assert said.splitlines()[-1] == "luzespecular: failed: interrupted"
+    assert not any((tmp_path / "out").iterdir())
