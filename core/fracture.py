@@ -8,10 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import polygons
+from .errors import SceneError
 from .planes import Planes
 
 DEFAULT_FACES = 10_000
 """Faces that a scene is cut into where the user gives no ``max_area``."""
+
+MOST_FACES = 5_000_000
+"""Faces that a scene is never cut into: a ``max_area`` that asks for more is taken for a slip."""
 
 FEWEST_ELEMENTS = 4_000
 """Receivers that the diffuse surfaces have together, however coarse their faces are."""
@@ -57,11 +61,6 @@ class Triangles:
     def areas(self) -> np.ndarray:
         """(n,) float [m²]."""
         return polygons.areas(self.vertices)
-
-    @property
-    def centroids(self) -> np.ndarray:
-        """(n, 3) float."""
-        return self.vertices.mean(axis=1)
 
 
 def cut_pieces(pieces, counts, max_areas) -> Triangles:
@@ -118,6 +117,32 @@ def cut_pieces(pieces, counts, max_areas) -> Triangles:
     cut = halve(Triangles(vertices[arranged], parent[arranged]), limits)
     grids = tuple(Grid(int(np.searchsorted(cut.parent, row)), *shape) for row, shape in shapes.items())
     return Triangles(cut.vertices, cut.parent, grids)
+
+
+def _estimated_faces(pieces: np.ndarray, counts: np.ndarray, limits: np.ndarray) -> float:
+    """About how many triangles `cut_pieces` would make; it knows that strips get cells no longer than wide."""
+    with np.errstate(over="ignore"):
+        by_area = np.maximum(counts - 2, polygons.areas(pieces) / limits)
+        if pieces.shape[1] < 4:
+            return float(by_area.sum())
+        sides = pieces[:, [1, 3]] - pieces[:, :1]
+        cells = np.ceil(np.linalg.norm(sides, axis=2) / np.sqrt(2 * limits)[:, None]).prod(axis=1)
+        return float(np.where(counts == 4, np.maximum(by_area, 2 * cells), by_area).sum())
+
+
+def _check_count(planes: Planes, is_cut: np.ndarray, limits: np.ndarray, area: float) -> None:
+    """Refuse more faces than can be meant, before any is cut."""
+    expected = _estimated_faces(planes.given, planes.given_counts, limits)
+    most = max(MOST_FACES, 2 * int((planes.given_counts - 2).sum()))  # faces as given are never too many
+    if expected <= most:
+        return
+    enough = area / MOST_FACES
+    while _estimated_faces(planes.given, planes.given_counts, np.where(is_cut, enough, math.inf)) > most:
+        enough *= 1.25
+    raise SceneError(
+        f"max_area {limits.min():g} m² would cut the scene into some {expected:.2g} faces, more than {most:,}; "
+        f"raise it to {1.06 * enough:.2g} m² or more"  # two digits round by at most 5 %
+    )
 
 
 def halve(triangles: Triangles, limits) -> Triangles:
@@ -222,13 +247,20 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
     Returns
     -------
     Fracture
+
+    Raises
+    ------
+    SceneError
+        Where the faces would be more than `MOST_FACES`.
     """
     surface = planes.sheet_surface[planes.given_sheet]
     piece_areas = polygons.areas(planes.given)
     is_cut = np.asarray(cut)[surface]
     total = piece_areas[is_cut].sum()
     limit = total / DEFAULT_FACES if max_area is None else max_area
-    faces = cut_pieces(planes.given, planes.given_counts, np.where(is_cut, limit if total else math.inf, math.inf))
+    limits = np.where(is_cut, limit if total else math.inf, math.inf)
+    _check_count(planes, is_cut, limits, total)
+    faces = cut_pieces(planes.given, planes.given_counts, limits)
     face_surface = surface[faces.parent]
     surface_area = np.bincount(surface, weights=piece_areas, minlength=len(planes.surfaces))
     reflecting = surface_area[np.asarray(reflects)].sum()

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import luzespecular as luz
+from luzespecular import fracture as fracture_room
 from luzespecular import polygons
 from luzespecular.fracture import Triangles, cut_pieces, fracture, halve, make_patches
 from luzespecular.planes import find_planes
@@ -47,7 +48,8 @@ def test_triangles_are_halved_until_small(corners, limit):
     assert cut.areas.sum() == pytest.approx(area, rel=1e-9)
     assert cut.areas.max() <= limit * (1 + 1e-8)
     assert len(cut.parent) <= max(1, 2 * area / limit * 2)
-    np.testing.assert_allclose(np.average(cut.centroids, axis=0, weights=cut.areas), triangle.mean(axis=0), atol=1e-9)
+    centroid = np.average(cut.vertices.mean(axis=1), axis=0, weights=cut.areas)
+    np.testing.assert_allclose(centroid, triangle.mean(axis=0), atol=1e-9)
 
 
 def test_one_limit_for_each_piece():
@@ -93,6 +95,25 @@ def test_black_and_mirrors_are_not_cut_for_their_size(light_shelf, max_area):
 def test_luminous_surfaces_are_cut():
     scene = box(luz.Material(exitance=10), without=("north",))
     assert len(cuts_of(scene, 0.005).faces) == 5 * 200
+
+
+@pytest.mark.parametrize("max_area", [1e-9, 1e-5, 1e-320])
+def test_a_slip_in_max_area_is_refused_before_cutting(light_shelf, max_area):
+    with pytest.raises(luz.SceneError, match=r"max_area .* faces, more than 5,000,000; raise it to .* m² or more"):
+        cuts_of(light_shelf.scene("D"), max_area)
+
+
+def test_the_max_area_that_the_message_asks_for_is_enough(light_shelf, monkeypatch):
+    strip = [[0, 0, 0], [100, 0, 0], [100, 1e-3, 0], [0, 1e-3, 0]]  # cells along it: more than by its area
+    monkeypatch.setattr(fracture_room, "MOST_FACES", 1000)
+    for scene in (light_shelf.scene("D"), scene_of({"strip": strip}, WHITE)):
+        with pytest.raises(luz.SceneError) as caught:
+            cuts_of(scene, 0.0005)
+        enough = float(str(caught.value).split("raise it to ")[1].split()[0])
+        assert len(cuts_of(scene, enough).faces) <= 1000
+    assert len(cuts_of(box(BLACK), 1e-9).faces) == 12, "what is not cut does not count"
+    monkeypatch.setattr(fracture_room, "MOST_FACES", 5)
+    assert len(cuts_of(light_shelf.scene("D"), math.inf).faces) == 18, "faces as given are never too many"
 
 
 def test_elements_resolve_what_is_not_cut():
