@@ -18,6 +18,7 @@ BoolProperty = partial(props.BoolProperty, translation_context=CONTEXT)
 EnumProperty = partial(props.EnumProperty, translation_context=CONTEXT)
 FloatProperty = partial(props.FloatProperty, translation_context=CONTEXT)
 IntProperty = partial(props.IntProperty, translation_context=CONTEXT)
+ShareProperty = partial(FloatProperty, min=0.0, max=1.0, subtype="FACTOR")
 StringProperty = partial(props.StringProperty, translation_context=CONTEXT)
 
 
@@ -42,29 +43,20 @@ class LuzMaterialSettings(bpy.types.PropertyGroup):
         ),
         default="SHADER",
     )
-    diffuse_reflectance: FloatProperty(
+    diffuse_reflectance: ShareProperty(
         name="Diffuse Reflectance",
         description="Share of the light that leaves evenly in all directions",
-        min=0.0,
-        max=1.0,
         default=0.5,
-        subtype="FACTOR",
     )
-    specular_reflectance: FloatProperty(
+    specular_reflectance: ShareProperty(
         name="Specular Reflectance",
         description="Share of the light that leaves as from a mirror",
-        min=0.0,
-        max=1.0,
         default=0.0,
-        subtype="FACTOR",
     )
-    regular_transmittance: FloatProperty(
+    regular_transmittance: ShareProperty(
         name="Regular Transmittance",
         description="Share of the light that passes straight through the whole pane at normal incidence",
-        min=0.0,
-        max=1.0,
         default=0.0,
-        subtype="FACTOR",
     )
     use_refractive_index: BoolProperty(
         name="Clear Pane",
@@ -207,13 +199,10 @@ class LuzSkySettings(bpy.types.PropertyGroup):
         step=100_000,
         precision=0,
     )
-    ground_reflectance: FloatProperty(
+    ground_reflectance: ShareProperty(
         name="Ground Reflectance",
-        description="Reflectance of the open ground around the scene; 0 where no light comes from below the horizon",
-        min=0.0,
-        max=1.0,
-        default=0.0,
-        subtype="FACTOR",
+        description="Reflectance of the open ground around the scene: 0.2 for grass or soil, 0 for no light from below",
+        default=0.2,
     )
 
 

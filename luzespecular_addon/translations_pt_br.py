@@ -154,8 +154,8 @@ _SKY = {
     "Sun Illuminance (lx)": "Iluminância do Sol (lx)",
     "Illuminance by the Sun on a plane that faces it": "Iluminância do Sol em um plano perpendicular aos seus raios",
     "Ground Reflectance": "Refletância do solo",
-    "Reflectance of the open ground around the scene; 0 where no light comes from below the horizon": (
-        "Refletância do solo aberto ao redor da cena; 0 onde não vem luz de baixo do horizonte"
+    "Reflectance of the open ground around the scene: 0.2 for grass or soil, 0 for no light from below": (
+        "Refletância do solo aberto ao redor da cena: 0,2 para grama ou terra, 0 para nenhuma luz de baixo"
     ),
 }
 

@@ -124,6 +124,7 @@ def apply_settings(settings) -> None:
     site.time_kind, site.hour = "SOLAR", 12.0
     sky.kind, sky.cie_type, sky.horizontal_illuminance = "CIE", "12", room.SKY_ILLUMINANCE
     sky.use_sun, sky.sun_illuminance = True, room.SUN_ILLUMINANCE
+    sky.ground_reflectance = 0.0  # as in the paper: no light from below
     accuracy.fineness, accuracy.bands, accuracy.max_area = "EXPERT", 60, LARGEST_FACE
     display.use_fixed_range, display.low, display.high = True, 200.0, 100_000.0
 

@@ -16,6 +16,7 @@ PROPERTY_CALLS = {
     "FloatProperty",
     "IntProperty",
     "PointerProperty",
+    "ShareProperty",
     "StringProperty",
 }
 
