@@ -18,6 +18,7 @@ from bpy.app.translations import pgettext_rpt as rpt_
 from .. import core as luz
 from ..core import files, tables, terminal
 from . import job, light, notices, session, study
+from .translations import solver_message
 
 # Options that set one number each: option, settings group, property, explanation.
 _NUMBERS = (
@@ -71,7 +72,9 @@ def main(arguments: Sequence[str]) -> int:
     except notices.BadInput as error:
         _tell(error.notices)
         return _failed("nothing was written")
-    except (luz.LuzEspecularError, OSError) as error:
+    except (luz.LuzEspecularError, MemoryError) as error:
+        return _failed(solver_message(error))
+    except OSError as error:
         return _failed(str(error))
     except KeyboardInterrupt:
         _failed("interrupted")

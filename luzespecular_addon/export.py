@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from .. import core as luz
 from . import materials, participants, placements
 from .notices import Notice, stop_on_errors
+from .translations import solver_message
 
 _LEAST_AREA = 1e-12
 """Triangles smaller than this share of their part's largest have no area."""
@@ -164,7 +165,7 @@ class _Builder:
             material = optics.material()
             self.scene.add(part.name, part.vertices, material, faces=part.faces[sound], two_sided=part.two_sided)
         except luz.SceneError as error:
-            self._notices.append(Notice("ERROR", str(error)))
+            self._notices.append(Notice("ERROR", solver_message(error)))
             return
         own_faces = None if part.own_faces is None else part.own_faces[part.polygons[sound]]
         self.surfaces.append(ExportedSurface(part.name, part.object_name, part.receiver, own_faces))

@@ -12,6 +12,7 @@ from .. import core as luz
 from ..core import sun
 from .materials import as_typed
 from .notices import Notice, refuse
+from .translations import solver_message
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ def daylight(scene: bpy.types.Scene) -> tuple[luz.Daylight, list[Notice]]:
     try:
         return _daylight(settings.sky, place), notices
     except luz.SceneError as error:
-        raise refuse(str(error)) from error
+        raise refuse(solver_message(error)) from error
 
 
 def _daylight(sky: bpy.types.PropertyGroup, place: SunPlace) -> luz.Daylight:

@@ -21,6 +21,7 @@ from .. import core as luz
 from ..core.materials import normal_interface_reflectance
 from .colours import relative_luminance
 from .notices import Notice
+from .translations import solver_message
 
 LUMENS_PER_WATT = 683.0
 """Luminous efficacy that Blender's exchange formats take for light of any colour [lm/W]."""
@@ -130,7 +131,9 @@ def notices(material: bpy.types.Material, optics: Optics) -> list[Notice]:
         optics.material()
     except luz.SceneError as error:
         text = rpt_("Material '{name}': {error}. See Properties > Material > LuzEspecular")
-        remarks.append(Notice("ERROR", text.format(name=material.name, error=str(error).removeprefix("Material: "))))
+        remarks.append(
+            Notice("ERROR", text.format(name=material.name, error=solver_message(error).removeprefix("Material: ")))
+        )
     return remarks
 
 

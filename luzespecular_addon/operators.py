@@ -13,6 +13,7 @@ from ..core import files, tables
 from . import display, materials, session, study
 from .job import Job
 from .notices import BadInput
+from .translations import solver_message
 
 _TICK = 0.05  # seconds between looks at the solver
 
@@ -97,8 +98,8 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         if isinstance(job.error, luz.Cancelled):
             self.report({"INFO"}, rpt_("Cancelled; nothing was changed"))
             return {"CANCELLED"}
-        if isinstance(job.error, luz.SceneError):
-            self.report({"ERROR"}, str(job.error))
+        if isinstance(job.error, luz.SceneError | MemoryError):
+            self.report({"ERROR"}, solver_message(job.error))
             return {"CANCELLED"}
         if job.error is not None:
             raise job.error

@@ -11,6 +11,7 @@ from .. import core as luz
 from ..core.terminal import clock
 from . import display, light, materials
 from .notices import BadInput
+from .translations import solver_message
 
 _LEVEL_ICONS = {"ERROR": "ERROR", "WARNING": "ERROR", "INFO": "INFO"}
 
@@ -226,7 +227,7 @@ def _draw_sun(column: bpy.types.UILayout, site: bpy.types.PropertyGroup, width: 
         place = light.sun_place(site)
         rise, fall = light.sunrise_sunset(site)
     except (BadInput, luz.SceneError) as error:
-        _draw_wrapped(column, str(error), "ERROR", width)
+        _draw_wrapped(column, solver_message(error), "ERROR", width)
         return
     text = iface_("Sun: altitude {altitude:.1f}°, azimuth {azimuth:.1f}°")
     column.label(text=text.format(altitude=place.altitude, azimuth=place.azimuth), icon="LIGHT_SUN", translate=False)

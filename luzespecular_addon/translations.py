@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import bpy
+import re
 
-from .translations_pt_br import OPERATORS, STAGES, TEXTS
+import bpy
+from bpy.app.translations import pgettext_rpt as rpt_
+
+from .translations_pt_br import OPERATORS, SOLVER, STAGES, TEXTS
 
 CONTEXT = "LuzEspecular"
 """Context of the names of properties and of the items to choose from."""
@@ -14,10 +17,33 @@ _BASE = __package__.rpartition(".")[0]
 
 def table() -> dict[str, dict[tuple[str, str], str]]:
     """Return the translations as Blender registers them."""
-    everywhere = TEXTS | STAGES
+    everywhere = TEXTS | STAGES | SOLVER
     texts = {(context, english): text for context in ("*", CONTEXT) for english, text in everywhere.items()}
     texts |= {("Operator", english): text for english, text in OPERATORS.items()}
     return {"pt_BR": texts}
+
+
+def solver_message(error: Exception) -> str:
+    """Return what the solver says, in the language of the interface where it is known, else as it is.
+
+    The solver knows English alone: its message is matched with the templates that have translations, and what stood in
+    the places of their {fields} goes into the translation. A lack of memory, which says nothing itself, is named.
+    """
+    if isinstance(error, MemoryError):
+        return rpt_("There is not enough memory: choose a coarser fineness, or a larger largest face")
+    said = str(error)
+    for template, pattern in _PATTERNS:
+        match = pattern.fullmatch(said)
+        if match:
+            return rpt_(template).format(**match.groupdict())
+    return said
+
+
+def _pattern(template: str) -> re.Pattern[str]:
+    return re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(template)), re.DOTALL)
+
+
+_PATTERNS = tuple((template, _pattern(template)) for template in SOLVER)
 
 
 def register() -> None:

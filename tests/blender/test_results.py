@@ -344,6 +344,24 @@ def test_cancelling_keeps_the_results_of_before(addon, bpy, make, solve, monkeyp
     np.testing.assert_array_equal(lux(addon, floor), values)
 
 
+@pytest.mark.parametrize(
+    ("refusal", "told"),
+    [("SceneError", "max_area 1e-09 m² would cut"), ("MemoryError", "There is not enough memory: choose a coarser")],
+)
+def test_what_the_solver_cannot_do_is_told_and_changes_nothing(addon, bpy, make, monkeypatch, refusal, told):
+    def no_memory(*_):
+        raise MemoryError
+
+    make.square("Floor", size=4.0)
+    make.quick(max_area=1e-9)
+    if refusal == "MemoryError":
+        monkeypatch.setattr(addon.study.Study, "run", no_memory)
+    before = everything(bpy)
+    with pytest.raises(RuntimeError, match=told):
+        bpy.ops.luzespecular.solve()
+    assert everything(bpy) == before
+
+
 def test_a_job_in_its_thread_stops_when_asked(addon, bpy, make):
     make.square("Floor", size=4.0)
     make.quick(max_area=0.01, bands=40)

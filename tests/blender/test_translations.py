@@ -1,6 +1,7 @@
 """Every text of the interface has its Brazilian Portuguese; the texts are found in the source, not in a list."""
 
 import ast
+import re
 import string
 from pathlib import Path
 
@@ -52,7 +53,7 @@ def interface_texts():
     """(context, text) of every text that the user can see."""
     texts = set()
     for path in sorted(ADDON.glob("*.py")):
-        if path.name.startswith("translations") or path.name == "__main__.py":
+        if path.name == "translations_pt_br.py" or path.name == "__main__.py":
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
         for node in ast.walk(tree):
@@ -98,8 +99,48 @@ def test_every_text_is_translated(addon):
 
 
 def test_nothing_is_translated_that_nobody_sees(addon):
-    seen = {text for _, text in interface_texts()} | set(addon.translations.STAGES)  # the solver names the stages
+    seen = {text for _, text in interface_texts()}
+    seen |= set(addon.translations.STAGES) | set(addon.translations.SOLVER)  # what the solver says
     assert not [text for _, text in addon.translations.table()["pt_BR"] if text not in seen]
+
+
+def solver_messages():
+    """Messages of the errors that the solver raises, with {} for what is filled in."""
+    for path in sorted((ADDON.parent / "core").glob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and _called(node) in ("SceneError", "Cancelled") and node.args:
+                parts = node.args[0].values if isinstance(node.args[0], ast.JoinedStr) else [node.args[0]]
+                yield "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in parts)
+
+
+def test_the_solver_still_says_what_is_translated(addon):
+    said = set(solver_messages())
+    assert len(said) > 50
+    unknown = [text for text in addon.translations.SOLVER if re.sub(r"{\w+}", "{}", text) not in said]
+    assert not unknown, "the solver's messages have changed: bring translations_pt_br.SOLVER in step"
+
+
+def test_messages_of_the_solver_are_translated(addon, monkeypatch):
+    luz, translations = addon.luz, addon.translations
+    monkeypatch.setattr(translations, "rpt_", translations.SOLVER.__getitem__)
+    scene = luz.Scene()
+    for refused, expected in (
+        (lambda: luz.prepare(scene), "A cena não tem superfícies; adicione ao menos uma"),
+        (
+            lambda: luz.Material(diffuse_reflectance=0.7, regular_transmittance=0.6),
+            "Material: refletância difusa + refletância especular + transmitância regular = 1.3; "
+            "reduza-as a no máximo 1",
+        ),
+        (
+            lambda: scene.add("Laje 'á'", [[0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]], luz.Material()),
+            "A superfície 'Laje 'á'' não é plana: um vértice está a 0.118 m do plano; "
+            "mova-o, ou divida a superfície em triângulos",
+        ),
+        (lambda: luz.UniformSky("bright"), None),
+    ):
+        with pytest.raises(luz.SceneError) as caught:
+            refused()
+        assert translations.solver_message(caught.value) == (expected or str(caught.value))
 
 
 def test_names_of_properties_have_a_context_of_their_own(addon, bpy):
