@@ -69,13 +69,15 @@ class RayScene:
             self._meet(ray, candidate, points, directions, outline, distance)
         return outline, distance
 
-    def pulled_inside(self, outline: int, places) -> np.ndarray:
-        """Places in an outline's plane, moved to just within the outline where they lie outside.
+    def pulled_inside(self, outline: int, places, margin) -> np.ndarray:
+        """Places in an outline's plane, moved to within the outline where they lie outside.
 
         Parameters
         ----------
         outline : int
         places : (n, 3) float
+        margin : (n,) float
+            Distance to keep from the edges [m].
 
         Returns
         -------
@@ -85,8 +87,8 @@ class RayScene:
         inward, start = self._edges
         real = np.isfinite(start[outline])
         for _ in range(2):  # pushing in at one edge may push out at the next
-            for across, least in zip(inward[outline][real], start[outline][real] + 2 * self.tolerance, strict=True):
-                moved += np.maximum(least - moved @ across, 0.0)[:, None] * across
+            for across, least in zip(inward[outline][real], start[outline][real], strict=True):
+                moved += np.maximum(least + margin - moved @ across, 0.0)[:, None] * across
         return moved
 
     def _meet(self, ray, candidate, points, directions, outline, distance) -> None:

@@ -15,9 +15,9 @@ import numpy as np
 
 from .globe import Hemisphere
 from .materials import Material
-from .projection import Beams, HalfSpace, Obstacles, obstacles_within, reflect, reflect_points
+from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
 from .rays import RayScene
-from .visibility import SHARED, View, look
+from .visibility import SHARED, Partial, View, look
 
 DEEPEST_CHAIN = 200
 """No chain is followed further, even between perfect mirrors."""
@@ -26,6 +26,9 @@ MANY_OUTLINES = 2_500
 """Scenes of more outlines are looked at ray by ray."""
 
 _FEW_BEAMS = 2_500
+
+_WITHIN = 4e-5
+"""Angle from a mirror's edge that centres of parts keep [rad], so that nothing that stands at the edge is before it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,9 +90,11 @@ class Sighting:
         not come.
     mirrored : bool
         Whether at least one mirror was on the way.
+    outlines : Outlines
+    partial : Partial or None
+        Beams of which only a part came here.
     rays : bool
         Whether each row is a single ray, wholly described by one part.
-    outlines : Outlines
     """
 
     rows: np.ndarray
@@ -101,6 +106,7 @@ class Sighting:
     weights: np.ndarray
     mirrored: bool
     outlines: Outlines
+    partial: Partial | None = None
     rays: bool = False
 
     def dead_share(self, obstacle: int, back: bool) -> float:
@@ -133,6 +139,76 @@ class ChainLimits:
 
 
 @dataclass(frozen=True, eq=False)
+class _Arriving:
+    """What of the beams reaches a mirror or pane.
+
+    Attributes
+    ----------
+    rows, columns : (r,) and (k,) int
+        Receivers and beams.
+    weights : (r, k) float
+    row, beam : (n,) int
+        Beams that arrive in part, as indices into ``rows`` and ``columns``.
+    direction : (n, 3) float
+        Towards the part's centre.
+    cosine : (k,) float
+        Of each beam with the outline's normal.
+    kept : (k,) int
+        Which of the columns of what this was taken from are left.
+    """
+
+    rows: np.ndarray
+    columns: np.ndarray
+    weights: np.ndarray
+    row: np.ndarray
+    beam: np.ndarray
+    direction: np.ndarray
+    cosine: np.ndarray
+    kept: np.ndarray
+
+    @classmethod
+    def at(cls, s: Sighting, k: int, parts, outlines: Outlines) -> _Arriving | None:
+        """What arrives at obstacle k of a sighting."""
+        view = s.view
+        mine = np.flatnonzero((view.part_seen == k) & (parts > 0))
+        beams = view.part_beam[mine]
+        columns = np.union1d(view.columns.get(k, beams[:0]), beams)
+        if not len(columns):
+            return None
+        weights = np.where(view.seen[:, columns] == k, s.weights[:, columns], 0.0)
+        row, beam = view.part_row[mine], np.searchsorted(columns, beams)
+        weights[row, beam] = parts[mine]
+        towards = view.part_direction[mine]
+        way = (view.heights[row, k] / (towards @ s.obstacles.normals[k]))[:, None] * towards
+        # centres are good to first order only: where edges meet, one may lie beside what it is the centre of
+        places = outlines.rays.pulled_inside(
+            int(s.obstacles.outlines[k]), s.points[row] + way, _WITHIN * np.linalg.norm(way, axis=1)
+        )
+        direction = places - s.points[row]
+        cosine = s.beams.directions[columns] @ s.obstacles.normals[k]
+        every = np.arange(len(view.seen))
+        return cls(every, columns, weights, row, beam, direction, cosine, np.arange(len(columns)))
+
+    def weighted(self, share: np.ndarray) -> _Arriving | None:
+        """What is left of it after shares ``(r, k)``; None where nothing is."""
+        weights = self.weights * share
+        rows, columns = np.flatnonzero(weights.any(axis=1)), np.flatnonzero(weights.any(axis=0))
+        if not len(rows):
+            return None
+        mine = np.flatnonzero(weights[self.row, self.beam] > 0)
+        return _Arriving(
+            self.rows[rows],
+            self.columns[columns],
+            weights[np.ix_(rows, columns)],
+            np.searchsorted(rows, self.row[mine]),
+            np.searchsorted(columns, self.beam[mine]),
+            self.direction[mine],
+            self.cosine[columns],
+            columns,
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class _Rays:
     """Single rays on their way: all arrays of length n."""
 
@@ -161,12 +237,28 @@ class _Rays:
 
     @classmethod
     def beyond(
-        cls, rows, points, directions, weights, throughput: float, mirrored: bool, past: HalfSpace, depth: int
+        cls,
+        rows,
+        points,
+        beams: Beams,
+        weights,
+        partial: Partial | None,
+        throughput: float,
+        mirrored: bool,
+        past: HalfSpace,
+        depth: int,
     ) -> _Rays:
-        """Rays of mirrored receivers, set forward to the mirror's plane."""
-        rays = cls.of(rows, points, directions, weights, throughput, mirrored, depth)
-        ahead = (past.offset - rays.points @ past.normal) / (rays.directions @ past.normal)
-        return replace(rays, points=rays.points + ahead[:, None] * rays.directions)
+        """Rays of mirrored receivers, set forward to the mirror's plane; partial beams in their own direction."""
+        rays = cls.of(rows, points, beams.directions, weights, throughput, mirrored, depth)
+        directions = rays.directions
+        if partial is not None:
+            place = np.zeros(weights.shape, np.int64)
+            place[weights > 0] = np.arange(len(rays.rows))
+            directions[place[partial.row, partial.beam]] = partial.direction / np.linalg.norm(
+                partial.direction, axis=1, keepdims=True
+            )
+        ahead = (past.offset - rays.points @ past.normal) / (directions @ past.normal)
+        return replace(rays, points=rays.points + ahead[:, None] * directions, directions=directions)
 
     @classmethod
     def joined(cls, parts: list[_Rays]) -> _Rays:
@@ -288,15 +380,23 @@ class GroupSight:
             left.append(_Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, False, 0))
             stack = []
         else:
-            stack = [(np.arange(len(points)), points, horizon, (), beams, weights, 1.0, False, ())]
+            stack = [(np.arange(len(points)), points, horizon, (), beams, weights, None, 1.0, False, ())]
         while stack:
-            rows, origin, horizon, beyond, beams, weights, throughput, mirrored, chain = stack.pop()
+            rows, origin, horizon, beyond, beams, weights, partial, throughput, mirrored, chain = stack.pop()
             checkpoint()
             obstacles = self._cut(chain, [horizon, *beyond])
             view = look(
-                origin, horizon.normal, beams, obstacles, self.outlines.tolerance, beyond[0] if beyond else None
+                origin,
+                horizon.normal,
+                beams,
+                obstacles,
+                self.outlines.tolerance,
+                beyond[0] if beyond else None,
+                partial,
             )
-            sighting = Sighting(rows, origin, horizon.normal, beams, obstacles, view, weights, mirrored, self.outlines)
+            sighting = Sighting(
+                rows, origin, horizon.normal, beams, obstacles, view, weights, mirrored, self.outlines, partial
+            )
             yield sighting
             if self.outlines.any_specular:
                 stack += self._continue(sighting, horizon, throughput, chain, truncated, left)
@@ -340,77 +440,68 @@ class GroupSight:
             if not (material.is_specular or material.is_transparent):
                 continue
             parts = s.part_weights() if parts is None else parts
-            self._continue_parts(s, k, parts, throughput, len(chain), truncated, left)
-            if k not in s.view.columns:
+            arriving = _Arriving.at(s, k, parts, self.outlines)
+            if arriving is None:
                 continue
-            seen = s.view.columns[k]
-            arriving = np.where(s.view.seen[:, seen] == k, s.weights[:, seen], 0.0)
-            cosine = s.beams.directions[seen] @ s.obstacles.normals[k]
             normal, offset = self.outlines.normals[o], float(self.outlines.offsets[o])
             for front in (True, False):
                 side = (s.view.heights[:, k] < 0) == front
-                mine = arriving * side[:, None]
-                for kind, share in self._ways(material, o, front, cosine):
-                    onward = mine * share
-                    rows, columns = np.flatnonzero(onward.any(axis=1)), np.flatnonzero(onward.any(axis=0))
-                    if not len(rows):
+                if not side.any():
+                    continue
+                for kind, share in self._ways(material, int(o), front, arriving.cosine):
+                    onward = arriving.weighted(np.where(side[:, None], share[None, :], 0.0))
+                    if onward is None:
                         continue
-                    onward = onward[np.ix_(rows, columns)]
-                    lit = np.count_nonzero(onward)
-                    product = throughput * float(share[columns].max())
-                    step = (int(o), kind, front)
+                    product = throughput * float(share[onward.kept].max())
+                    rows, points = s.rows[onward.rows], s.points[onward.rows]
                     if product < self.limits.cutoff or len(chain) >= DEEPEST_CHAIN:
-                        truncated[s.rows[rows]] += onward.sum(axis=1)
+                        truncated[rows] += onward.weights.sum(axis=1)
                         continue
-                    beams, points = s.beams.take(seen[columns]), s.points[rows]
+                    beams, direction = s.beams.take(onward.columns), onward.direction
+                    window = None if s.partial is None else s.partial.window[onward.rows]
+                    facing = 1.0 if front == (kind == "mirror") else -1.0
+                    past, ahead = HalfSpace(facing * normal, facing * offset), horizon
                     if kind == "mirror":
-                        facing = 1.0 if front else -1.0
-                        beams = beams.reflected(normal)
-                        points = reflect_points(points, normal, offset)
-                        ahead, past = horizon.reflected(normal, offset), HalfSpace(facing * normal, facing * offset)
-                    else:
-                        facing = -1.0 if front else 1.0
-                        ahead, past = horizon, HalfSpace(facing * normal, facing * offset)
+                        beams, ahead = beams.reflected(normal), horizon.reflected(normal, offset)
+                        points, direction = reflect_points(points, normal, offset), reflect(direction, normal)
+                        window = None if window is None else reflect(window, normal).astype(np.float32)
                     mirrored = s.mirrored or kind == "mirror"
-                    if chain and lit < _FEW_BEAMS:
+                    partial = self._partial(onward, direction, points, int(o), window)
+                    if chain and np.count_nonzero(onward.weights) < _FEW_BEAMS:
                         left.append(
                             _Rays.beyond(
-                                s.rows[rows], points, beams.directions, onward, product, mirrored, past, len(chain) + 1
+                                rows, points, beams, onward.weights, partial, product, mirrored, past, len(chain) + 1
                             )
                         )
                         continue
+                    step = (int(o), kind, front)
                     following.append(
-                        (s.rows[rows], points, ahead, (past,), beams, onward, product, mirrored, (*chain, step))
+                        (
+                            rows,
+                            points,
+                            ahead,
+                            (past,),
+                            beams,
+                            onward.weights,
+                            partial,
+                            product,
+                            mirrored,
+                            (*chain, step),
+                        )
                     )
         return following
 
-    def _continue_parts(self, s: Sighting, k: int, parts, throughput: float, depth: int, truncated, left: list) -> None:
-        """Carry parts of beams on as single rays from their own centres.
-
-        A whole beam stands for its centre, which may miss the mirror or pane that an edge cuts the part from.
-        """
-        view, o = s.view, s.obstacles.outlines[k]
-        mine = np.flatnonzero((view.part_seen == k) & (parts > 0))
-        if not len(mine):
-            return
-        row = view.part_row[mine]
-        height, towards = view.heights[row, k], view.part_direction[mine]
-        ahead = height / (towards @ s.obstacles.normals[k])
-        # centres are good to first order only: where edges meet, one may lie beside what it is the centre of
-        places = self.outlines.rays.pulled_inside(int(o), s.points[row] + ahead[:, None] * towards)
-        directions = places - s.points[row]
-        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-        cosine = directions @ s.obstacles.normals[k]
-        rays = _Rays(
-            s.rows[row],
-            places,
-            directions,
-            parts[mine],
-            np.full(len(mine), throughput),
-            np.full(len(mine), s.mirrored),
-            np.full(len(mine), depth),
+    def _partial(self, onward: _Arriving, direction, points, o: int, window) -> Partial | None:
+        """Beams that come through outline ``o`` in part, within it and within the windows before it."""
+        if not len(onward.row):
+            return None
+        whole = self.outlines.whole
+        one = Obstacles(
+            whole.outlines[[o]], whole.vertices[[o]], whole.bounding[[o]], whole.normals[[o]], whole.offsets[[o]]
         )
-        left += self._onward(rays, places, int(o), height < 0, cosine, truncated)
+        planes = edge_planes(points, one, self.outlines.tolerance)[0][:, 0].astype(np.float32)
+        planes = planes if window is None else np.concatenate([window, planes], axis=1)
+        return Partial(onward.row, onward.beam, direction, planes)
 
     def _onward(self, rays: _Rays, places, o: int, front, cosine, truncated) -> list[_Rays]:
         """Rays that met an outline at ``places``, after it: those bright enough to follow."""

@@ -7,7 +7,7 @@ are settled by their covered share, in float64.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -78,7 +78,34 @@ class View:
     heights: Any
 
 
-def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, past: HalfSpace | None = None) -> View:
+@dataclass(frozen=True, eq=False)
+class Partial:
+    """Beams that come through a mirror or pane in part.
+
+    Attributes
+    ----------
+    row, beam : (n,) int
+    direction : (n, 3) float
+        Towards the centre of the part.
+    window : (r, w, 3) float32
+        For each receiver the planes through the edges of the mirror or pane, positive inside.
+    """
+
+    row: np.ndarray
+    beam: np.ndarray
+    direction: np.ndarray
+    window: np.ndarray
+
+
+def look(
+    points,
+    normal,
+    beams: Beams,
+    obstacles: Obstacles,
+    tolerance: float,
+    past: HalfSpace | None = None,
+    partial: Partial | None = None,
+) -> View:
     """Find the nearest obstacle along each beam from each point.
 
     Parameters
@@ -94,6 +121,8 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
         Distance below which a point lies in a plane [m].
     past : HalfSpace, optional
         Only what the beams meet inside it counts: beyond the mirror or pane that they come through.
+    partial : Partial, optional
+        Beams of which only a part gets there; they are settled as parts of beams throughout.
 
     Returns
     -------
@@ -109,6 +138,8 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
     hull = _bounding_corners(points)
     slopes = beams.directions @ obstacles.normals.T
     start = np.zeros((len(points), 1), np.float32) if past is None else _distance_to(past, points, beams.directions)
+    if partial is not None and past is not None:
+        start[partial.row, partial.beam] = _along(past, points[partial.row], partial.direction)
     found = []
     width = obstacles.bounding.shape[1]
     possible: dict[int, np.ndarray] = {}
@@ -122,6 +153,8 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
         with np.errstate(divide="ignore", over="ignore"):
             slope = (1.0 / slopes[columns, o]).astype(np.float32)
         distance = heights[:, o].astype(np.float32)[:, None] * slope
+        if partial is not None:
+            _set_partial(distance, partial, columns, heights[:, o], obstacles.normals[o])
         if not certain.all():
             sines = _edge_sines(edges, beams.directions[columns].astype(np.float32))
             inside = sines[0].copy() if len(sines) else np.full(distance.shape, np.inf, np.float32)
@@ -149,16 +182,81 @@ def look(points, normal, beams: Beams, obstacles: Obstacles, tolerance: float, p
             nearest[:, columns] = np.where(whole, distance, before)
             seen[:, columns] = np.where(whole, np.int32(o), seen[:, columns])
             possible[o] = columns
-    if not found:
+    if found:
+        candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
+        eye = _Eye(points, planes.astype(np.float32), heights, np.asarray(normal, float), past, partial)
+        candidates = _Candidates.of(*candidates, eye.planes, heights, beams)
+        for o in _settle_whole(seen, nearest, start, candidates, eye, beams, obstacles):
+            possible.setdefault(int(o), within[int(o)])
+        crossed = _crossings(seen, candidates, heights, beams, obstacles)
+        view = _settle_parts(seen, nearest, possible, crossed, eye, beams, obstacles)
+    else:
         empty = np.zeros(0, np.int64)
-        return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
-    candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
-    planes = planes.astype(np.float32)
-    candidates = _Candidates.of(*candidates, planes, heights, beams)
-    for o in _settle_whole(seen, nearest, candidates, heights, slopes):
-        possible.setdefault(int(o), within[int(o)])
-    crossed = _crossings(seen, candidates, heights, beams, obstacles)
-    return _settle_parts(seen, nearest, possible, crossed, planes, heights, np.asarray(normal, float), beams, obstacles)
+        view = View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
+    return view if partial is None else _with_partial(view, partial)
+
+
+@dataclass(frozen=True, eq=False)
+class _Eye:
+    """Where receivers look from: what settling parts of beams needs to know of them."""
+
+    points: np.ndarray
+    planes: np.ndarray
+    heights: np.ndarray
+    normal: np.ndarray
+    past: HalfSpace | None
+    partial: Partial | None
+
+    def part_of(self, row, beam, beams: int) -> np.ndarray:
+        """(n,) int: which of the partial beams these are; -1 for those that get here wholly."""
+        if self.partial is None:
+            return np.full(len(row), -1)
+        mark = np.full((len(self.points), beams), -1)
+        mark[self.partial.row, self.partial.beam] = np.arange(len(self.partial.row))
+        return mark[row, beam]
+
+    def towards(self, row, beam, beams: Beams) -> np.ndarray:
+        """(n, 3) float: the centre of each beam, or of the part of it that gets here."""
+        directions = beams.directions[beam]
+        if self.partial is not None:
+            part = self.part_of(row, beam, len(beams.directions))
+            directions[part >= 0] = self.partial.direction[part[part >= 0]]
+        return directions
+
+
+def _set_partial(distance, partial: Partial, columns, heights, normal) -> None:
+    """Distances of partial beams along the direction of their part, in place."""
+    place = np.full(int(max(columns.max(), partial.beam.max())) + 1, -1)
+    place[columns] = np.arange(len(columns))
+    column = place[partial.beam]
+    mine = np.flatnonzero(column >= 0)
+    row = partial.row[mine]
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        along = heights[row] / (partial.direction[mine] @ normal)
+    distance[row, column[mine]] = along
+
+
+def _with_partial(view: View, partial: Partial) -> View:
+    """The view with beams that are partial, and see one thing or nothing, listed among the parts."""
+    found = view.seen[partial.row, partial.beam]
+    mine = np.flatnonzero(found != SHARED)
+    row, beam = partial.row[mine], partial.beam[mine]
+    view.seen[row, beam] = SHARED
+    return replace(
+        view,
+        part_row=np.concatenate([view.part_row, row]),
+        part_beam=np.concatenate([view.part_beam, beam]),
+        part_seen=np.concatenate([view.part_seen, found[mine]]),
+        part_share=np.concatenate([view.part_share, np.ones(len(mine))]),
+        part_direction=np.concatenate([view.part_direction, partial.direction[mine]]),
+    )
+
+
+def _along(plane: HalfSpace, points, directions) -> np.ndarray:
+    """(n,) float: distance from each point along its direction to a plane, a little less."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (plane.offset - points @ plane.normal) / np.einsum("...c,c->...", directions, plane.normal)
+    return along * (1 - 1e-5)
 
 
 def _distance_to(plane: HalfSpace, points: np.ndarray, directions: np.ndarray) -> np.ndarray:
@@ -245,9 +343,8 @@ class _Crossed:
         return np.flatnonzero(np.concatenate(([True], self.group[1:] != self.group[:-1])))
 
 
-def _settle_parts(
-    seen, nearest, possible, crossed: _Crossed, planes, heights, normal, beams: Beams, obstacles: Obstacles
-) -> View:
+def _settle_parts(seen, nearest, possible, crossed: _Crossed, eye: _Eye, beams: Beams, obstacles: Obstacles) -> View:
+    heights, normal = eye.heights, eye.normal
     if not len(crossed.row):
         empty = np.zeros(0, np.int64)
         return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
@@ -264,12 +361,14 @@ def _settle_parts(
     ahead = np.isfinite(np.maximum.reduceat(crossed.distance, starts))
     simple = (joined | lone | aligned) & ahead
     simple &= joined | (background != OPEN) | ~beams.odd[head[1]]
+    partial = eye.part_of(*head, len(beams.directions)) >= 0
+    simple &= ~partial
     # every crossing edge met by an opposite one: a corner where obstacles close
     closed = np.zeros(len(starts), bool)
     closed[~simple] = np.linalg.norm(_group_sums(crossed.edge_sum, starts, ~simple), axis=1) < _SEAM
 
     # several edges, but no opening: shares by each edge alone, brought to a sum of 1
-    filled = ~simple & (total > 1e-9) & closed & (background == OPEN)
+    filled = ~simple & (total > 1e-9) & closed & (background == OPEN) & ~partial
     # the part's share of the cosine-weighted beam, to first order
     cosine = beams.directions @ normal
     share = crossed.share * np.clip(1 + (crossed.offset @ normal) / cosine[crossed.beam], 0.0, 2.0)
@@ -290,7 +389,7 @@ def _settle_parts(
         if not len(groups):
             break
         share[mine], towards[mine], left[groups], left_towards[groups] = _sample_parts(
-            crossed.take(mine), background[groups], order, planes, heights, normal, beams, obstacles
+            crossed.take(mine), background[groups], order, eye, beams, obstacles
         )
         open_ &= (left > 0) & (left < 1) & (background == OPEN)
     seen[head] = SHARED
@@ -402,13 +501,16 @@ class _Candidates:
         return cls(row, beam, obstacle, sine, outside, edges, pair, normal[crossing], across[crossing], place[crossing])
 
 
-def _settle_whole(seen, nearest, candidates: _Candidates, heights, slopes) -> np.ndarray:
+def _settle_whole(
+    seen, nearest, start, candidates: _Candidates, eye: _Eye, beams: Beams, obstacles: Obstacles
+) -> np.ndarray:
     """Enter obstacles that no edge parts from a beam into ``seen`` and ``nearest``, in place; gives their numbers."""
     whole = np.flatnonzero((candidates.edges == 0) & ~candidates.outside)
     row, beam, obstacle = candidates.row[whole], candidates.beam[whole], candidates.obstacle[whole]
-    with np.errstate(divide="ignore", over="ignore"):
-        distance = (heights[row, obstacle] / slopes[beam, obstacle]).astype(np.float32)
-    ahead = np.flatnonzero((distance > 0) & (distance < nearest[row, beam]))
+    towards = eye.towards(row, beam, beams)
+    distance = _distance_along(eye.heights, obstacles, row, obstacle, towards).astype(np.float32)
+    least = start[row, beam] if start.shape[1] > 1 else start[row, 0]
+    ahead = np.flatnonzero((distance > least) & (distance < nearest[row, beam]))
     ahead = ahead[np.argsort(-distance[ahead], kind="stable")]  # the nearest is written last
     seen[row[ahead], beam[ahead]] = obstacle[ahead]
     nearest[row[ahead], beam[ahead]] = distance[ahead]
@@ -454,15 +556,17 @@ def _crossings(seen, candidates: _Candidates, heights, beams: Beams, obstacles: 
     )
 
 
-def _sample_parts(
-    crossed: _Crossed, background, order: int, planes, heights, normal, beams: Beams, obstacles: Obstacles
-):
+def _sample_parts(crossed: _Crossed, background, order: int, eye: _Eye, beams: Beams, obstacles: Obstacles):
     """Shares of beams that several edges cross, by a lattice of rays: each ray meets one obstacle, so nothing leaks."""
     row, beam, obstacle, starts = crossed.row, crossed.beam, crossed.obstacle, crossed.starts
+    planes, heights, normal = eye.planes, eye.heights, eye.normal
     local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(row))))
     single = np.float32
     rays = beams.rays(beam[starts], order)
     weight = np.maximum(np.einsum("gsc,c->gs", rays, normal.astype(single)), 0.0)
+    if eye.partial is not None:
+        part = eye.part_of(row[starts], beam[starts], len(beams.directions))
+        _keep_partial(eye.partial, row[starts], part, rays, weight)
     weight /= np.maximum(weight.sum(axis=1, keepdims=True), single(1e-30))
     mine = rays[local]
     inside = np.ones(mine.shape[:2], bool)
@@ -482,6 +586,8 @@ def _sample_parts(
 
     distance = distances(row, obstacle, mine)
     distance[~inside] = np.inf
+    if eye.past is not None:
+        distance[distance < _along(eye.past, eye.points[row[starts]][:, None], rays)[local]] = np.inf
     known = background >= 0
     best = np.minimum.reduceat(distance, starts, axis=0)
     far = np.full(weight.shape, np.inf, single)
@@ -498,3 +604,16 @@ def _sample_parts(
         return share, np.matmul(part[:, None], towards)[:, 0] / np.maximum(share, single(1e-30))[:, None]
 
     return *share_and_centre(hit, mine), *share_and_centre(free, rays)
+
+
+def _keep_partial(partial: Partial, row, part, rays, weight) -> None:
+    """Leave only the rays that come through the window; where there are none, the part's own direction, in place."""
+    groups = np.flatnonzero(part >= 0)
+    if not len(groups):
+        return
+    towards = partial.direction[part[groups]]
+    inside = (np.matmul(rays[groups], partial.window[row[groups]].transpose(0, 2, 1)) >= -_ON_EDGE).all(axis=2)
+    none = ~(inside & (weight[groups] > 0)).any(axis=1)
+    weight[groups] *= inside
+    weight[groups[none]] = 1.0
+    rays[groups[none]] = (towards / np.linalg.norm(towards, axis=1, keepdims=True))[none, None]
