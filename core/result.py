@@ -15,7 +15,7 @@ from .projection import HalfSpace
 from .sources import gather_sources
 from .specular import GroupSight
 from .stages import Stage
-from .sunlight import Sunlight, light_points
+from .sunlight import Sunlight
 
 if TYPE_CHECKING:
     from .daylight import Daylight
@@ -203,8 +203,7 @@ class Result:
         geometry, transfer = self.transfer.geometry, self.transfer
         place = place - geometry.planes.centre
         out = np.zeros(len(place))
-        direct, specular = light_points(geometry.outlines, self.sunlight.beams, place, normal)
-        out += direct + specular
+        out += self.sunlight.at(geometry.outlines, place, normal)
         exitance = self.field.patch_emitted + (0.0 if initial else self.field.patch_exitance)
         sources = self.field.sources[: self.field.emitters] if initial else self.field.sources
         for rows in _coplanar(place, normal, geometry.outlines.tolerance):

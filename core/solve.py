@@ -10,10 +10,11 @@ import numpy as np
 from . import radiosity
 from .daylight import Daylight
 from .errors import SceneError
+from .penumbra import trace_disc
 from .result import Result
 from .sources import Source, gather_sources
 from .stages import Progress, Recorder
-from .sunlight import NO_SUNLIGHT, Sunlight, light_elements, trace_sun
+from .sunlight import NO_SUNLIGHT, Sunlight, trace_sun
 from .transfer import Geometry, Transfer, run_parallel
 
 EXACT_OUTLINES = 400
@@ -82,22 +83,10 @@ def solve_light(
         )
     else:
         with recorder.stage("sun", 0.05):
-            sunlight = trace_sun(
-                geometry.outlines,
-                np.asarray(sun.direction),
-                sun.normal_illuminance,
-                transfer.limits.cutoff,
-                lambda: recorder.report(0.05, "sun"),
+            sunlight, on_elements = follow_sun(
+                geometry, sun, transfer.limits.cutoff, lambda: recorder.report(0.05, "sun")
             )
-            for name, specular in (("sun_direct", False), ("sun_specular", True)):
-                components[name] = light_elements(
-                    sunlight.patches,
-                    geometry.fracture.elements,
-                    geometry.fracture.element_sheet,
-                    geometry.planes.outline_sheet,
-                    len(geometry.planes.sheet_surface),
-                    specular,
-                )
+            components["sun_direct"], components["sun_specular"] = on_elements
 
     reflectance, emitted = patch_properties(geometry)
     if geometry.targets.patches.count == 0:
@@ -109,6 +98,16 @@ def solve_light(
             field = interreflect(transfer, components, sunlight, reflectance, emitted, tolerance, cycles, recorder)
     recorder.report(1.0, "solved")
     return Result.of(transfer, light, sky, sunlight, field, recorder.stages)
+
+
+def follow_sun(geometry: Geometry, sun, cutoff: float, checkpoint) -> tuple[Sunlight, tuple[np.ndarray, np.ndarray]]:
+    """All that the Sun lights, and what elements get straight and by mirrors, both (e,) float [lx]."""
+    cuts, outlines, outline_sheet = geometry.fracture, geometry.outlines, geometry.planes.outline_sheet
+    if sun.disc:
+        sunlight = trace_disc(outlines, sun, cuts.elements, cuts.element_sheet, outline_sheet, cutoff, checkpoint)
+    else:
+        sunlight = trace_sun(outlines, np.asarray(sun.direction), sun.normal_illuminance, cutoff, checkpoint)
+    return sunlight, sunlight.on_elements(cuts.elements, cuts.element_sheet, outline_sheet)
 
 
 def sky_column(geometry: Geometry, light: Daylight) -> np.ndarray:
@@ -143,8 +142,7 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     elif emitters:
         components["emitted"] = _gather_elements(transfer, emitters, recorder)
     smooth = components["sky_direct"] + components["sky_specular"] + components["emitted"]
-    if not sunny:
-        smooth = smooth + sun
+    smooth = smooth + (sunlight.blur if sunny else sun)
     if cycles == 0 or not reflectance.any():
         components["interreflected"] = np.zeros(len(sun))
         return Field(components, np.zeros(len(reflectance)), by_globe, emitters, len(emitters))
@@ -239,8 +237,6 @@ def _check_options(light, tolerance, cycles) -> None:
         raise SceneError(
             f"solve needs a luzespecular.Daylight, not {type(light).__name__}; e.g. Daylight(sky=UniformSky(1000))"
         )
-    if light.sun is not None and light.sun.disc:
-        raise SceneError("Sun(disc=True), penumbras, is not available yet; leave out disc")
     try:
         number = float(tolerance)
     except (TypeError, ValueError):

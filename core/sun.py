@@ -13,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from .checks import checked_array, checked_number
+from .disc import moments_above
 from .ephemeris import apparent_sun
 from .errors import SceneError
 
@@ -35,7 +36,8 @@ class Sun:
     direction : (3,) array_like of float, optional
         Vector (east, north, up) that points to the Sun, of any length but zero; instead of altitude and azimuth.
     disc : bool, optional
-        False (default): all rays parallel, sharp patches. True: a disc of :attr:`ANGULAR_DIAMETER`, with penumbrae.
+        False (default): all rays parallel, sharp patches. True: an even disc of :attr:`ANGULAR_DIAMETER`, with
+        penumbrae; `normal_illuminance` is still on the plane that faces it, the whole disc in view.
 
     Attributes
     ----------
@@ -51,7 +53,7 @@ class Sun:
 
     Notes
     -----
-    At or below the horizon it gives nothing: see :attr:`is_up`.
+    At or below the horizon it gives nothing: see :attr:`is_up`. Of a disc that the horizon cuts, the part above counts.
     """
 
     ANGULAR_DIAMETER: ClassVar[float] = 0.533  #: [degrees], mean over the year
@@ -84,13 +86,33 @@ class Sun:
 
     @property
     def is_up(self) -> bool:
-        """Whether the Sun stands above the horizon; on the horizon it does not."""
-        return self.direction[2] > 0.0
+        """Whether the Sun stands above the horizon, with ``disc`` any of it; on the horizon it does not."""
+        return bool(self.disc_horizon < 1.0) if self.disc else self.direction[2] > 0.0
 
     @property
     def horizontal_illuminance(self) -> float:
         """Illuminance on the unobstructed horizontal plane [lx]; 0 at or below the horizon."""
+        if self.disc and self.disc_horizon > -1.0:
+            return self.normal_illuminance * float(moments_above(self.disc_horizon) @ self.disc_axes[:, 2])
         return self.normal_illuminance * max(self.direction[2], 0.0)
+
+    @property
+    def disc_axes(self) -> np.ndarray:
+        """(3, 3) float: direction of the disc's centre, a level radius of its tangent plane and a rising one."""
+        centre = np.asarray(self.direction)
+        level = np.array([-centre[1], centre[0], 0.0])
+        length = float(np.linalg.norm(level))
+        level = level / length if length > 0 else np.array([1.0, 0.0, 0.0])
+        radius = np.tan(np.radians(0.5 * self.ANGULAR_DIAMETER))
+        rising = [-centre[2] * level[1], centre[2] * level[0], length]
+        return np.stack([centre, radius * level, np.multiply(radius, rising)])
+
+    @property
+    def disc_horizon(self) -> float:
+        """Height of the horizon on the disc in radii above its centre, -1 (all of the disc is up) to 1 (none)."""
+        _, _, (_, _, rise) = self.disc_axes
+        height = self.direction[2]
+        return -1.0 if height >= rise else min(1.0, -height / rise) if rise > 0 else 1.0
 
 
 def direction_of(altitude, azimuth) -> np.ndarray:

@@ -69,16 +69,44 @@ class Sunlight:
 
     Attributes
     ----------
-    beams : list of Beam
-        The Sun's own first.
+    beams : list
+        Each a `Beam` (or a `DiscBeam` of :mod:`.penumbra`), the Sun's own first.
     patches : list of SunPatch
     truncated : float
         Flux of the chains that were cut off [lm].
     """
 
-    beams: list[Beam]
+    beams: list
     patches: list[SunPatch]
     truncated: float
+
+    def on_elements(self, elements, element_sheet, outline_sheet) -> tuple[np.ndarray, np.ndarray]:
+        """Means over elements of what comes straight and by mirrors.
+
+        Parameters
+        ----------
+        elements : (e, 3, 3) float
+        element_sheet : (e,) int, plus the number of sheets for backs
+        outline_sheet : (o,) int
+
+        Returns
+        -------
+        direct, specular : (e,) float [lx]
+        """
+        sheets = int(outline_sheet.max()) + 1
+        return tuple(
+            light_elements(self.patches, elements, element_sheet, outline_sheet, sheets, specular)
+            for specular in (False, True)
+        )
+
+    @property
+    def blur(self):
+        """(e,) float, or 0: what elements get besides the patches; adds up to about nothing [lx]."""
+        return 0.0
+
+    def at(self, outlines: Outlines, points, normals) -> np.ndarray:
+        """(m,) float: sunlight at free points, straight and by mirrors [lx]."""
+        return sum(light_points(outlines, self.beams, points, normals))
 
 
 _ROUNDING = 1e-11
@@ -162,7 +190,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
             around, at = _mouth_prism(beam.mouth, beam.travel)
             for normal, offset in zip(around, at, strict=True):
                 region = polygons.clip(region, normal, offset)
-            region = region[_wide(region, tolerance)]
+            region = region[wide(region, tolerance)]
             if not len(region):
                 continue
         pieces = [(region, np.ones(len(region)))]
@@ -181,7 +209,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
             if not pieces:
                 break
         for polygon, factor in ((p, f) for batch, factors in pieces for p, f in zip(batch, factors, strict=True)):
-            if _wide(polygon, tolerance):
+            if wide(polygon, tolerance):
                 lux = beam.normal_illuminance * abs(float(cosine[k])) * float(factor)
                 found.append(SunPatch(int(present[k]), bool(cosine[k] < 0), polygon, lux, beam.order))
     return found
@@ -200,11 +228,11 @@ def _shadow(outlines, pieces, blocker, outline, upstream, plane, beam, cosine):
             if not normal.any():
                 continue
             outside = polygons.clip(inside, -normal, -offset)
-            keep = _wide(outside, outlines.tolerance)
+            keep = wide(outside, outlines.tolerance)
             if keep.any():
                 left.append((outside[keep], factors[keep]))
             inside = polygons.clip(inside, normal, offset)
-            lit = _wide(inside, outlines.tolerance)
+            lit = wide(inside, outlines.tolerance)
             inside, factors = inside[lit], factors[lit]
             if not len(inside):
                 break
@@ -213,7 +241,7 @@ def _shadow(outlines, pieces, blocker, outline, upstream, plane, beam, cosine):
     return left
 
 
-def _wide(shapes, tolerance: float) -> np.ndarray:
+def wide(shapes, tolerance: float) -> np.ndarray:
     """(...) bool: polygons ``(..., v, 3)`` wider than a length; what is narrower is rounding."""
     longest = np.linalg.norm(np.roll(shapes, -1, axis=-2) - shapes, axis=-1).max(axis=-1)
     return polygons.areas(shapes) > tolerance * np.maximum(longest, tolerance)

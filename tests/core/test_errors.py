@@ -74,11 +74,6 @@ def test_options_of_prepare(options, message):
         (UNIFORM, {"cycles": 2.5}, "cycles must be"),
         (UNIFORM, {"cycles": True}, "cycles must be"),
         (UNIFORM, {"cycles": "5"}, "cycles must be"),
-        (
-            luz.Daylight(sun=luz.Sun(altitude=40, azimuth=0, normal_illuminance=1.0, disc=True)),
-            {},
-            r"Sun\(disc=True\), penumbras, is not available yet; leave out disc",
-        ),
     ],
 )
 def test_options_of_solve(light, options, message):

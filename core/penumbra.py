@@ -1,0 +1,589 @@
+"""Sunlight from the Sun's whole disc: true penumbrae, straight, through panes and by chains of mirrors.
+
+Whether light from a point of the disc (u, v) reaches a point x past an edge is a bilinear question: the edge's plane
+through x is affine in x and linear in the direction. Where all corners of a face say the same for the whole disc, the
+face is wholly lit or wholly dark. For the rest one of the two integrals is exact and the other by quadrature: penumbrae
+wider than the face see the disc clipped at points of the face, narrower ones the face clipped for points of the disc.
+Faces that both kinds of penumbra cross are split.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from . import disc, polygons
+from .projection import HalfSpace, reflect, reflect_points
+from .specular import DEEPEST_CHAIN, Outlines
+from .sun import Sun
+from .sunlight import Sunlight, trace_sun, wide
+
+_NARROW = 0.7
+"""Faces up to this many penumbrae wide have the disc clipped at their points; wider ones are clipped themselves."""
+
+_SPLITS = 3
+_SAMPLES = 20_000
+_TESTS = 500_000
+_SPECK = 1e-12
+
+_BARYCENTRIC = np.array(
+    [
+        [1 / 3, 1 / 3, 1 / 3],
+        *(np.roll([1 - 2 * a, a, a], k) for a in ((6 - np.sqrt(15)) / 21, (6 + np.sqrt(15)) / 21) for k in range(3)),
+    ]
+)
+_POINT_WEIGHTS = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
+"""Radon's rule for means over triangles, exact to the fifth degree."""
+
+
+@dataclass(frozen=True, eq=False)
+class Screens:
+    """What stands between receivers and the Sun's disc, in the receivers' mirrored space.
+
+    Attributes
+    ----------
+    vertices : (b, w, 3) float, padded
+    window : (b,) bool
+        Mirrors on the way, which light has to pass; the others stop it.
+    transmittance : (b,) float
+    axes : (3, 3) float
+        Of the disc: its centre's direction, and two radii.
+    tolerance : float
+    """
+
+    vertices: np.ndarray
+    window: np.ndarray
+    transmittance: np.ndarray
+    axes: np.ndarray
+    tolerance: float
+
+    def __post_init__(self):
+        after = np.roll(self.vertices, -1, axis=1)
+        edge = after - self.vertices
+        length = np.linalg.norm(edge, axis=2)
+        normal = polygons.newell_normal(self.vertices)
+        normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+        # (a - x) x (b - x) · d = (a x b) · d - x · ((b - a) x d), for each of the axes d
+        offset = polygons.cross(self.vertices, after) @ self.axes.T
+        slope = -polygons.cross(edge[:, :, None], self.axes)
+        towards = normal @ self.axes.T
+        for name, value in (
+            ("true", length > self.tolerance * 1e-3),
+            ("forms", np.concatenate([offset[..., None], slope], axis=3)),  # (b, w, 3, 4)
+            ("normals", normal),
+            ("offsets", np.einsum("bc,bc->b", normal, self.vertices.mean(axis=1))),
+            ("towards", towards),
+            ("edge_on", np.abs(towards[:, 0]) <= np.hypot(towards[:, 1], towards[:, 2])),
+        ):
+            object.__setattr__(self, name, value)
+
+    def __len__(self) -> int:
+        return len(self.vertices)
+
+    def take(self, index) -> Screens:
+        """Some of the screens."""
+        return replace(
+            self,
+            vertices=self.vertices[index],
+            window=self.window[index],
+            transmittance=self.transmittance[index],
+        )
+
+    def joined(self, other: Screens) -> Screens:
+        """These and others of the same space."""
+        width = max(self.vertices.shape[1], other.vertices.shape[1])
+        both = [np.pad(s.vertices, ((0, 0), (0, width - s.vertices.shape[1]), (0, 0)), "edge") for s in (self, other)]
+        return replace(
+            self,
+            vertices=np.concatenate(both),
+            window=np.concatenate([self.window, other.window]),
+            transmittance=np.concatenate([self.transmittance, other.transmittance]),
+        )
+
+    def reflected(self, normal, offset: float) -> Screens:
+        """Their images in a mirror."""
+        return replace(self, vertices=reflect_points(self.vertices, normal, offset), axes=reflect(self.axes, normal))
+
+    def relation(self, points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """How the disc, seen from anywhere within the hulls of points, lies to the screens.
+
+        Parameters
+        ----------
+        points : (n, c, 3) float
+            Corners; what holds at all of them holds between, since an edge's margin is convex over space.
+
+        Returns
+        -------
+        outside, inside : (b, n) bool
+            Wholly beside a screen; wholly behind it. Neither: the disc may be cut.
+        ratio : (b, n, w) float
+            For edges that may cut it the hull's width over the penumbra's, else NaN.
+        """
+        n, count = points.shape[:2]
+        corners = np.concatenate([np.ones((n, count, 1)), points], axis=2)
+        width = self.vertices.shape[1]
+        # corners first: NumPy is slow where it reduces over a short last axis
+        value = corners.transpose(1, 0, 2).reshape(-1, 4) @ self.forms.reshape(-1, 4).T
+        value = np.moveaxis(value.reshape(count, n, len(self), width, 3), 2, 1)
+        centre, half = value[..., 0], np.hypot(value[..., 1], value[..., 2])
+        height = self.offsets[:, None] - np.einsum("bk,nck->cbn", self.normals, points)
+        true = self.true[:, None]
+        outside, inside = np.ones((len(self), n), bool), np.zeros((len(self), n), bool)
+        for side in (1.0, -1.0):
+            mine = self.edge_on | (np.sign(self.towards[:, 0]) == side)
+            if not mine.any():
+                continue
+            beside = (((side * centre + half).max(axis=0) <= 0) & true).any(axis=2)
+            beside |= (side * height <= self.tolerance).all(axis=0)
+            outside = np.where(mine[:, None], outside & beside, outside)
+            behind = (((side * centre - half).min(axis=0) >= 0) | ~true).all(axis=2)
+            behind &= (side * height > self.tolerance).all(axis=0)
+            inside = np.where((mine & ~self.edge_on)[:, None], behind, inside)
+        cuts = ((centre + half).max(axis=0) > 0) & ((centre - half).min(axis=0) < 0) & true
+        across = np.maximum(2 * half.mean(axis=0), 1e-300)
+        return outside, inside, np.where(cuts, np.ptp(centre, axis=0) / across, np.nan)
+
+    def lines_at(self, k: int, points) -> np.ndarray:
+        """(n, w, 3) float: screen ``k``'s edges as half-planes of the disc, seen from points ``(n, 3)``."""
+        form = self.forms[k]
+        height = self.offsets[k] - points @ self.normals[k]
+        lines = form[..., 0] + np.einsum("wkj,nj->nwk", form[..., 1:], points)
+        return np.sign(height)[:, None, None] * lines
+
+    def planes_for(self, k: int, places) -> tuple[np.ndarray, np.ndarray]:
+        """Normals (n, w, 3) and offsets (n, w) of screen ``k``'s prisms for points ``(n, 3)`` of the disc."""
+        planes = np.einsum("nk,wkj->nwj", places, self.forms[k])
+        planes *= np.sign(places @ self.towards[k])[:, None, None]
+        return planes[..., 1:], -planes[..., 0]
+
+
+@dataclass(frozen=True, eq=False)
+class DiscBeam:
+    """The light of the Sun's disc after some mirrors.
+
+    Attributes
+    ----------
+    screens : Screens
+        Of all legs before the last, and the mirrors.
+    share : float
+        Product of the mirrors' reflectances.
+    ahead : HalfSpace or None
+        Before the last mirror, where the beam goes to.
+    order : int
+    """
+
+    screens: Screens
+    share: float
+    ahead: HalfSpace | None
+    order: int
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3) float: of the disc."""
+        return self.screens.axes
+
+
+@dataclass(frozen=True, eq=False)
+class DiscSunlight(Sunlight):
+    """Sunlight of a Sun with a disc.
+
+    Attributes
+    ----------
+    part : (1, v, 3) float
+        What of the disc's square is above the horizon.
+    normal_illuminance : float [lx]
+    direct, specular : (e,) float
+        On the elements [lx].
+    collimated : (e,) float
+        On the elements, by the patches [lx].
+    """
+
+    part: np.ndarray
+    normal_illuminance: float
+    direct: np.ndarray
+    specular: np.ndarray
+    collimated: np.ndarray
+
+    def on_elements(self, *_) -> tuple[np.ndarray, np.ndarray]:
+        """See `Sunlight.on_elements`."""
+        return self.direct, self.specular
+
+    @property
+    def blur(self) -> np.ndarray:
+        """See `Sunlight.blur`."""
+        return self.direct + self.specular - self.collimated
+
+    def at(self, outlines: Outlines, points, normals) -> np.ndarray:
+        """See `Sunlight.at`: here the disc is clipped by all that each point sees before it."""
+        out = np.zeros(len(points))
+        for beam in self.beams:
+            near = _ahead(outlines, beam)
+            rows = max(1, _TESTS // max(1, near.forms.size + beam.screens.forms.size))
+            for start in range(0, len(points), rows):
+                some = slice(start, start + rows)
+                out[some] += beam.share * _at_points(beam, near, self.part, points[some], normals[some])
+        return self.normal_illuminance * out
+
+
+def trace_disc(
+    outlines: Outlines, sun: Sun, elements, element_sheet, outline_sheet, cutoff: float, checkpoint: Callable[[], None]
+) -> DiscSunlight:
+    """Light from the Sun's disc on all elements.
+
+    Parameters
+    ----------
+    outlines : Outlines
+    sun : Sun
+        Its upper limb above the horizon.
+    elements : (e, 3, 3) float
+    element_sheet : (e,) int, plus the number of sheets for backs
+    outline_sheet : (o,) int
+    cutoff : float
+        Beams weaker than this share of the Sun are not followed.
+    checkpoint : callable
+        Called between surfaces; may raise to stop.
+
+    Returns
+    -------
+    DiscSunlight
+        Its patches are those of a collimated Sun of the same vector illuminance: for light that they send on, the
+        blur of their edges is a redistribution (`Sunlight.blur`).
+    """
+    axes, level = sun.disc_axes, sun.disc_horizon
+    part = polygons.clip(disc.SQUARE[None], np.array([-level, 0.0, 1.0]))
+    sheets = [np.flatnonzero(outline_sheet == k) for k in range(int(outline_sheet.max()) + 1)]
+    order = np.argsort(element_sheet, kind="stable")
+    bounds = np.searchsorted(element_sheet[order], np.arange(2 * len(sheets) + 1))
+    members = [order[a:b] for a, b in itertools.pairwise(bounds)]
+    rule = disc.quadrature(level)
+    values, truncated = np.zeros((2, len(elements))), 0.0
+    none = Screens(np.zeros((0, 3, 3)), np.zeros(0, bool), np.zeros(0), axes, outlines.tolerance)
+    waiting, beams = [DiscBeam(none, 1.0, None, 0)], []
+    while waiting:
+        beam = waiting.pop(0)
+        beams.append(beam)
+        near = _ahead(outlines, beam)
+        for number, mine in enumerate(sheets):
+            checkpoint()
+            material = outlines.materials[mine[0]]
+            for side in (1.0, -1.0):
+                receivers = members[number if side > 0 else number + len(sheets)]
+                mirrors = material.is_specular and (
+                    side > 0 or outlines.two_sided[mine[0]] or material.reflects_both_sides
+                )
+                if not len(receivers) and not mirrors:
+                    continue
+                triangles = elements[receivers if len(receivers) else members[number]]
+                plane = HalfSpace(side * outlines.normals[mine[0]], side * float(outlines.offsets[mine[0]]))
+                whole = float(disc.moments(_facing(part, plane.normal, beam.axes))[0] @ (beam.axes @ plane.normal))
+                screens = _before(near, beam, plane, outlines.vertices[mine].reshape(-1, 3)) if whole > 0 else None
+                if screens is None:
+                    continue
+                mean = face_means(beam, screens, part, rule, plane.normal, triangles)
+                values[min(beam.order, 1), receivers] += beam.share * mean[: len(receivers)]
+                strongest = float(mean.max()) / whole
+                if not mirrors or strongest <= _SPECK:
+                    continue
+                share = beam.share * float(material.specular_at(plane.normal @ beam.axes[0]))
+                if share * strongest < cutoff or beam.order >= DEEPEST_CHAIN:
+                    truncated += share * float(mean @ polygons.areas(triangles))
+                    continue
+                waiting += [
+                    following
+                    for o in mine
+                    if (following := _thrown(beam, screens, plane, outlines.vertices[o], share)) is not None
+                ]
+    vector = axes.T @ disc.moments(part)[0]
+    length = float(np.linalg.norm(vector))
+    sharp = trace_sun(outlines, vector / length, length * sun.normal_illuminance, cutoff, checkpoint)
+    collimated = sum(sharp.on_elements(elements, element_sheet, outline_sheet))
+    direct, specular = sun.normal_illuminance * values
+    lumens = truncated * sun.normal_illuminance
+    return DiscSunlight(beams, sharp.patches, lumens, part, sun.normal_illuminance, direct, specular, collimated)
+
+
+def _facing(part, normal, axes) -> np.ndarray:
+    """(1, v, 3) float: what of the disc is before a plane."""
+    return polygons.clip(part, axes @ normal)
+
+
+def _ahead(outlines: Outlines, beam: DiscBeam) -> Screens:
+    """Outlines that the beam may meet, cut where it begins."""
+    vertices, present = outlines.vertices, np.arange(len(outlines.vertices))
+    if beam.ahead is not None:
+        present = np.flatnonzero((vertices @ beam.ahead.normal - beam.ahead.offset > outlines.tolerance).any(axis=1))
+        vertices = polygons.clip(vertices[present], beam.ahead.normal, beam.ahead.offset)
+    cosine = outlines.normals[present] @ beam.axes[0]
+    through = np.zeros(len(present))
+    for k, o in enumerate(present):
+        if outlines.materials[o].is_transparent:
+            through[k] = float(outlines.materials[o].transmittance_at(cosine[k]))
+    return Screens(vertices, np.zeros(len(present), bool), through, beam.axes, outlines.tolerance)
+
+
+def _before(near: Screens, beam: DiscBeam, plane: HalfSpace, vertices) -> Screens | None:
+    """Screens that matter to receivers in a plane, between the hull of vertices; None where no light can come."""
+    if beam.ahead is not None and not (vertices @ beam.ahead.normal - beam.ahead.offset > near.tolerance).any():
+        return None
+    across = polygons.plane_basis(plane.normal)
+    flat = vertices @ across.T
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    frame = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
+    hull = (frame @ across + plane.offset * plane.normal)[None]
+    outside, inside, _ = (found[:, 0] for found in beam.screens.relation(hull))
+    if (outside & beam.screens.window).any() or _shut(beam.screens, inside):
+        return None
+    screens = beam.screens.take(~(outside | (inside & beam.screens.window)))
+    height = near.vertices @ plane.normal - plane.offset
+    above = np.flatnonzero((height > near.tolerance).any(axis=1))
+    above = above[~near.take(above).relation(hull)[0][:, 0]]
+    if not len(above):
+        return screens
+    cut = polygons.clip(near.vertices[above], plane.normal, plane.offset)
+    kept = wide(cut, near.tolerance)
+    between = replace(near.take(above[kept]), vertices=cut[kept])
+    if _shut(between, between.relation(hull)[1][:, 0]):
+        return None
+    return screens.joined(between)
+
+
+def _shut(screens: Screens, inside) -> bool:
+    return bool((inside & ~screens.window & (screens.transmittance == 0)).any())
+
+
+def _thrown(beam: DiscBeam, screens: Screens, plane: HalfSpace, outline, share: float) -> DiscBeam | None:
+    """The beam that an outline of a mirror throws; None where it gets no light."""
+    tolerance = screens.tolerance
+    window = outline[None]
+    if beam.ahead is not None:
+        window = polygons.clip(window, beam.ahead.normal, beam.ahead.offset)
+    if not wide(window, tolerance)[0]:
+        return None
+    outside, inside, _ = (found[:, 0] for found in screens.relation(window))
+    if (outside & screens.window).any() or _shut(screens, inside):
+        return None
+    kept = screens.take(~(outside | (inside & screens.window))).reflected(plane.normal, plane.offset)
+    mouth = Screens(window, np.ones(1, bool), np.ones(1), kept.axes, tolerance)
+    return DiscBeam(kept.joined(mouth), share, plane, beam.order + 1)
+
+
+def face_means(beam: DiscBeam, screens: Screens, part, rule, normal, triangles) -> np.ndarray:
+    """Mean over triangles of one plane of what they get from the disc, per normal illuminance.
+
+    Parameters
+    ----------
+    beam : DiscBeam
+    screens : Screens
+        Nothing of them beneath the plane.
+    part : (1, v, 3) float
+        What of the disc's square is above the horizon.
+    rule : pair of (q, 3) and (q,) float
+        Quadrature of that part.
+    normal : (3,) float
+    triangles : (n, 3, 3) float
+
+    Returns
+    -------
+    (n,) float
+        Times the beam's share and the normal illuminance it is the illuminance.
+    """
+    means = np.zeros(len(triangles))
+    owner, weight = np.arange(len(triangles)), np.ones(len(triangles))
+    disc_part, cosines = _facing(part, normal, beam.axes), beam.axes @ normal
+    whole = float(disc.moments(disc_part)[0] @ cosines)
+    for depth in range(_SPLITS + 1):
+        factor, cut, narrowest, widest = _sort(beam, screens, triangles)
+        crossed = (factor > 0) & (cut.any(axis=0) | np.isinf(widest))
+        lit = (factor > 0) & ~crossed
+        np.add.at(means, owner[lit], weight[lit] * factor[lit] * whole)
+        by_disc = crossed & (widest <= _NARROW)
+        by_face = crossed & ~by_disc & ((narrowest > _NARROW) | (depth == _SPLITS))
+        for mine, method in ((by_disc, _clip_disc), (by_face, _clip_faces)):
+            for rows in _chunks(np.flatnonzero(mine), len(rule[1])):
+                found = method(beam, screens, disc_part, rule, cosines, triangles[rows], cut[:, rows])
+                np.add.at(means, owner[rows], weight[rows] * factor[rows] * found)
+        rest = np.flatnonzero(crossed & ~by_disc & ~by_face)
+        if not len(rest):
+            break
+        triangles = quarters(triangles[rest])
+        owner, weight = np.repeat(owner[rest], 4), np.repeat(weight[rest] / 4, 4)
+    return means
+
+
+def quarters(triangles) -> np.ndarray:
+    """(4n, 3, 3) float: triangles ``(n, 3, 3)`` split at the middles of their sides."""
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    p, q, r = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+    parts = [(a, p, r), (p, b, q), (r, q, c), (p, q, r)]
+    return np.stack([np.stack(t, axis=1) for t in parts], axis=1).reshape(-1, 3, 3)
+
+
+def _chunks(rows, samples: int) -> list[np.ndarray]:
+    step = max(1, _SAMPLES // samples)
+    return [rows[start : start + step] for start in range(0, len(rows), step)]
+
+
+def _sort(beam: DiscBeam, screens: Screens, triangles):
+    """What wholly covers or misses each triangle, what cuts it, and its least and largest width in penumbrae.
+
+    Returns
+    -------
+    factor : (n,) float
+        Transmittance of all that covers it wholly; 0: dark.
+    cut : (b, n) bool
+    narrowest, widest : (n,) float
+    """
+    n = len(triangles)
+    factor, cut = np.ones(n), np.zeros((len(screens), n), bool)
+    narrowest, widest = np.full(n, np.inf), np.zeros(n)
+    if beam.ahead is not None:
+        height = triangles @ beam.ahead.normal - beam.ahead.offset
+        factor[(height <= screens.tolerance).all(axis=1)] = 0.0
+        widest[(height < -screens.tolerance).any(axis=1)] = np.inf
+    for k in range(len(screens)):
+        alive = np.flatnonzero(factor > 0)
+        step = max(1, _TESTS // screens.forms[k].size)
+        one = screens.take([k])
+        for rows in (alive[start : start + step] for start in range(0, len(alive), step)):
+            outside, inside, ratio = (found[0] for found in one.relation(triangles[rows]))
+            if screens.window[k]:
+                factor[rows[outside]] = 0.0
+            else:
+                factor[rows[inside]] *= screens.transmittance[k]
+            crosses = ~(outside | inside)
+            cut[k, rows] = crosses
+            rows, ratio = rows[crosses], ratio[crosses]
+            if len(rows):
+                found = ~np.isnan(ratio)
+                narrowest[rows] = np.minimum(narrowest[rows], np.where(found, ratio, np.inf).min(axis=1))
+                widest[rows] = np.maximum(widest[rows], np.where(found, ratio, 0.0).max(axis=1))
+    return factor, cut, narrowest, widest
+
+
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """Convex pieces of what is still lit: of the disc, or of faces.
+
+    Attributes
+    ----------
+    shapes : (m, v, 3) float, padded
+    rows : (m,) int
+        Sample that each belongs to.
+    factor : (m,) float
+    """
+
+    shapes: np.ndarray
+    rows: np.ndarray
+    factor: np.ndarray
+
+    def take(self, index) -> _Pieces:
+        return _Pieces(self.shapes[index], self.rows[index], self.factor[index])
+
+    @classmethod
+    def joined(cls, parts: list[_Pieces]) -> _Pieces:
+        width = max(p.shapes.shape[1] for p in parts)
+        return cls(
+            np.concatenate([np.pad(p.shapes, ((0, 0), (0, width - p.shapes.shape[1]), (0, 0)), "edge") for p in parts]),
+            np.concatenate([p.rows for p in parts]),
+            np.concatenate([p.factor for p in parts]),
+        )
+
+    def parted(self, normals, offsets) -> tuple[_Pieces, _Pieces]:
+        """What of the pieces is inside half-spaces, and what outside: ``normals`` (m, 3), ``offsets`` (m,)."""
+        height = np.einsum("mvc,mc->vm", self.shapes, normals) - offsets
+        least, most = height.min(axis=0), height.max(axis=0)
+        speck = _SPECK * np.maximum(most, -least)
+        inside, outside = least >= -speck, most <= speck
+        outside &= ~inside
+        split = ~(inside | outside)
+        if not split.any():
+            return self.take(inside), self.take(outside)
+        both, normals, offsets = self.take(split), normals[split], offsets[split]
+        inner = replace(both, shapes=polygons.clip(both.shapes, normals, offsets))
+        outer = replace(both, shapes=polygons.clip(both.shapes, -normals, -offsets))
+        return _Pieces.joined([self.take(inside), inner]), _Pieces.joined([self.take(outside), outer])
+
+    def behind(self, screens: Screens, k: int, normals, offsets) -> _Pieces:
+        """The pieces past screen ``k``, its edges as half-spaces for each sample, ``(n, w, 3)`` and ``(n, w)``."""
+        inside, left = self, []
+        for edge in np.flatnonzero(screens.true[k]):
+            inside, outside = inside.parted(normals[inside.rows, edge], offsets[inside.rows, edge])
+            left.append(outside)
+        if screens.window[k]:
+            return inside
+        if screens.transmittance[k] > 0:
+            left.append(replace(inside, factor=inside.factor * screens.transmittance[k]))
+        return _Pieces.joined(left)
+
+
+def _clip_disc(beam, screens, disc_part, rule, cosines, triangles, cut) -> np.ndarray:
+    """(n,) float: means over triangles by points on them, each with the disc clipped exactly."""
+    n, q = len(triangles), len(_POINT_WEIGHTS)
+    points = np.einsum("qt,ntc->nqc", _BARYCENTRIC, triangles).reshape(-1, 3)
+    seen = _seen_disc(screens, disc_part, points, np.repeat(cut, q, axis=1)) @ cosines
+    return seen.reshape(n, q) @ _POINT_WEIGHTS
+
+
+def _seen_disc(screens: Screens, disc_part, points, cut) -> np.ndarray:
+    """(n, 3) float: moments of what points see of the disc past those screens that cut it, ``cut`` (b, n).
+
+    ``disc_part`` is (1 or n, v, 3).
+    """
+    n = len(points)
+    pieces = _Pieces(np.broadcast_to(disc_part, (n, *disc_part.shape[1:])), np.arange(n), np.ones(n))
+    for k in np.flatnonzero(cut.any(axis=1)):
+        mine = cut[k][pieces.rows]
+        if mine.any():
+            lines = screens.lines_at(k, points)
+            after = pieces.take(mine).behind(screens, k, lines, np.zeros(lines.shape[:2]))
+            pieces = _Pieces.joined([pieces.take(~mine), after])
+    seen = np.zeros((n, 3))
+    np.add.at(seen, pieces.rows, pieces.factor[:, None] * disc.moments(pieces.shapes))
+    return seen
+
+
+def _clip_faces(beam, screens, disc_part, rule, cosines, triangles, cut) -> np.ndarray:
+    """(n,) float: means over triangles by points on the disc, each with the triangles clipped exactly."""
+    places, weights = rule
+    cosine = places @ cosines
+    up = cosine > 0
+    places, weights = places[up], (weights * cosine)[up]
+    n, q = len(triangles), len(places)
+    size = polygons.areas(triangles)
+    pieces = _Pieces(np.repeat(triangles, q, axis=0), np.arange(n * q), np.tile(weights, n))
+    if beam.ahead is not None:
+        pieces = pieces.take(np.tile(places @ (beam.axes @ beam.ahead.normal) < 0, n))
+        count = len(pieces.rows)
+        normals = np.broadcast_to(beam.ahead.normal, (count, 3))
+        pieces, _ = pieces.parted(normals, np.full(count, beam.ahead.offset))
+    for k in np.flatnonzero(cut.any(axis=1)):
+        mine = cut[k][pieces.rows // q]
+        if mine.any():
+            normals, offsets = screens.planes_for(k, places)
+            after = pieces.take(mine).behind(screens, k, np.tile(normals, (n, 1, 1)), np.tile(offsets, (n, 1)))
+            pieces = _Pieces.joined([pieces.take(~mine), after])
+    lit = np.bincount(pieces.rows // q, weights=pieces.factor * polygons.areas(pieces.shapes), minlength=n)
+    return lit / size
+
+
+def _at_points(beam: DiscBeam, near: Screens, part, points, normals) -> np.ndarray:
+    """(m,) float: what points with normals of their own get from the disc, per normal illuminance."""
+    lines = normals @ beam.axes.T
+    out = np.zeros(len(points))
+    rows = np.flatnonzero(lines[:, 0] + np.hypot(lines[:, 1], lines[:, 2]) > 0)
+    if beam.ahead is not None:
+        rows = rows[points[rows] @ beam.ahead.normal - beam.ahead.offset > near.tolerance]
+    screens = beam.screens.joined(near)
+    outside, inside, _ = screens.relation(points[rows, None])
+    factor = np.where(inside & ~screens.window[:, None], screens.transmittance[:, None], 1.0).prod(axis=0)
+    factor[(outside & screens.window[:, None]).any(axis=0)] = 0.0
+    lit = factor > 0
+    rows, factor, cut = rows[lit], factor[lit], ~(outside | inside)[:, lit]
+    if len(rows):
+        shapes = polygons.clip(np.broadcast_to(part, (len(rows), *part.shape[1:])), lines[rows])
+        seen = _seen_disc(screens, shapes, points[rows], cut)
+        out[rows] = factor * np.einsum("nk,nk->n", seen, lines[rows])
+    return out
