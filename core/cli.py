@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import datetime as dt
+import logging
 import sys
 import zoneinfo
 from collections.abc import Sequence
@@ -45,6 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that lacks a letter of a name is no reason to fail
+    # on a terminal over the line of the progress, which begins anew below
+    logging.basicConfig(format="\rwarning: %(message)-60s" if sys.stderr.isatty() else "warning: %(message)s")
     options = parser().parse_args(arguments)
     try:
         options.run(options)

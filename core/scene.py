@@ -101,7 +101,7 @@ class Scene:
         if faces is None:
             pieces, counts, source, notes = _polygon_pieces(name, points)
         else:
-            pieces, counts, source, notes = _mesh_pieces(name, points, faces)
+            pieces, counts, source, notes = _mesh_pieces(name, points, faces, bool(two_sided))
         for note in notes:
             logger.warning("Surface '%s': %s", name, note)
         surface = Surface(name, material, bool(two_sided), pieces, counts, source, tuple(notes))
@@ -170,9 +170,9 @@ def _flat_pieces(points: np.ndarray, unit: np.ndarray):
     return pieces, counts, np.zeros(len(lifted), np.int64), []
 
 
-def _mesh_pieces(name: str, points: np.ndarray, faces):
+def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
     loops_by_length = _faces_by_length(name, faces, len(points))
-    pieces, counts, source, notes = [], [], [], []
+    pieces, counts, source, notes, kept = [], [], [], [], []
     dropped = bent = 0
     for length, (rows, index) in sorted(loops_by_length.items()):
         corners = points[index]
@@ -181,6 +181,7 @@ def _mesh_pieces(name: str, points: np.ndarray, faces):
         twice_area = np.linalg.norm(normals, axis=1)
         sound = twice_area > 1e-14 * np.maximum(size, 1e-300) ** 2
         dropped += int((~sound).sum())
+        kept.append(index[sound])
         rows, corners, size = rows[sound], corners[sound], size[sound]
         if not len(rows):
             continue
@@ -213,12 +214,28 @@ def _mesh_pieces(name: str, points: np.ndarray, faces):
         notes.append(f"{dropped} faces without area left out")
     if bent:
         notes.append(f"{bent} faces that are not flat cut into triangles")
+    turned = 0 if two_sided else _turned_edges(kept, len(points))
+    if turned:
+        notes.append(
+            f"its faces look to different sides: across {turned} edges neighbours are turned over; "
+            "recalculate its normals"
+        )
     total = sum(len(p) for p in pieces)
     if not total:
         raise SceneError(f"Surface '{name}' has no face with an area; mend or remove it")
     width = max(p.shape[1] for p in pieces if len(p))
     padded = [np.concatenate([p, np.repeat(p[:, -1:], width - p.shape[1], axis=1)], axis=1) for p in pieces if len(p)]
     return np.concatenate(padded), np.concatenate(counts), np.concatenate(source), notes
+
+
+def _turned_edges(loops: list[np.ndarray], vertex_count: int) -> int:
+    """Edges of exactly two faces that both walk the same way; between faces that look to one side they walk both."""
+    start = np.concatenate([index.reshape(-1) for index in loops]).astype(np.int64)
+    end = np.concatenate([np.roll(index, -1, axis=1).reshape(-1) for index in loops]).astype(np.int64)
+    edge = np.minimum(start, end) * vertex_count + np.maximum(start, end)
+    _, of, faces = np.unique(edge[start != end], return_inverse=True, return_counts=True)
+    walked = np.bincount(of.reshape(-1), weights=np.sign(end - start)[start != end])
+    return int(((faces == 2) & (np.abs(walked) == 2)).sum())
 
 
 def _turns_once(edge: np.ndarray, unit: np.ndarray) -> np.ndarray:

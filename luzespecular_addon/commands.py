@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import bpy
@@ -121,10 +121,9 @@ def _solve(options: argparse.Namespace) -> int:
     with bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
         for hour, planned in _plans(settings, hours):
             settings.site.hour = hour
-            _tell(notice for notice in planned.notices if notice not in told)
-            told.update(planned.notices)
+            _tell_new(planned.notices, told)
             result = _run(planned)
-            study.finish(bpy.context, planned, result)
+            _tell_new(study.finish(bpy.context, planned, result), told)
             rows = _print_table(planned, result)
             moment = f"{light.date_of(settings.site).isoformat()} {terminal.clock(hour)}"
             overview += [(moment, settings.site.time_kind.lower(), *tables.surface_row(row)) for row in rows]
@@ -227,6 +226,11 @@ def _save_blend(path: Path) -> Path:
 
 def _written(path: Path) -> None:
     print(f"wrote {path}")
+
+
+def _tell_new(remarks: Iterable[notices.Notice], told: set[notices.Notice]) -> None:
+    _tell(notice for notice in remarks if notice not in told)
+    told.update(remarks)
 
 
 def _tell(remarks) -> None:

@@ -104,11 +104,11 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         if job.error is not None:
             raise job.error
         try:
-            study.finish(context, job.study, job.result)
+            notices = study.finish(context, job.study, job.result)
         except BadInput as error:
             _report_all(self, error.notices)
             return {"CANCELLED"}
-        _report_all(self, job.study.notices)
+        _report_all(self, notices)
         count = len(job.result.illuminance)
         self.report({"INFO"}, rpt_("Solved: {title}; {count} faces").format(title=job.study.title, count=count))
         return {"FINISHED"}

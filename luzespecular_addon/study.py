@@ -19,7 +19,7 @@ from . import display, export, light, results_object, session, writeback
 from .choices import SKY_ITEMS
 from .materials import as_typed
 from .notices import Notice, refuse, stop_on_errors
-from .translations import CONTEXT
+from .translations import CONTEXT, solver_message
 
 Progress = Callable[[float, str], bool]
 
@@ -98,8 +98,13 @@ def collect(context: bpy.types.Context, exported: export.Export | None = None) -
     )
 
 
-def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> None:
+def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> tuple[Notice, ...]:
     """Write the results of a run to the scene and show them.
+
+    Returns
+    -------
+    tuple of Notice
+        What the user should know about the study, and about what the solver found in the scene.
 
     Raises
     ------
@@ -113,8 +118,18 @@ def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> None
     results_object.create(scene, study.export, result)
     for results in own:
         writeback.write(results)
-    _fill_table(scene, study, result)
+    notices = (*study.notices, *_remarks_of_solver(study, result))
+    _fill_table(scene, study, result, notices)
     display.show(scene)
+    return notices
+
+
+def _remarks_of_solver(study: Study, result: luz.Result) -> list[Notice]:
+    texts = [solver_message(note) for note in result.transfer.geometry.planes.notes]
+    for surface in study.export.scene.surfaces.values():
+        for note in surface.notes:
+            texts.append(rpt_("Surface '{name}': {remark}").format(name=surface.name, remark=solver_message(note)))
+    return [Notice("WARNING", text) for text in texts]
 
 
 def _part(progress: Progress, begin: float, end: float) -> Progress:
@@ -139,7 +154,7 @@ def _options(accuracy: bpy.types.PropertyGroup, area: float) -> dict:
     return {"bands": _BANDS[fineness], "max_area": max_area}
 
 
-def _fill_table(scene: bpy.types.Scene, study: Study, result: luz.Result) -> None:
+def _fill_table(scene: bpy.types.Scene, study: Study, result: luz.Result, notices: tuple[Notice, ...]) -> None:
     results = scene.luzespecular.results
     results.title = study.title
     results.rows.clear()
@@ -151,6 +166,6 @@ def _fill_table(scene: bpy.types.Scene, study: Study, result: luz.Result) -> Non
         row.area, row.minimum, row.mean = statistics.area, statistics.minimum, statistics.mean
         row.maximum, row.uniformity = statistics.maximum, statistics.uniformity
     results.notices.clear()
-    for notice in study.notices:
+    for notice in notices:
         entry = results.notices.add()
         entry.level, entry.text = notice.level, notice.text

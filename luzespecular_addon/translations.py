@@ -23,15 +23,15 @@ def table() -> dict[str, dict[tuple[str, str], str]]:
     return {"pt_BR": texts}
 
 
-def solver_message(error: Exception) -> str:
-    """Return what the solver says, in the language of the interface where it is known, else as it is.
+def solver_message(said: Exception | str) -> str:
+    """Return what the solver refuses or remarks, in the language of the interface where it is known, else as it is.
 
     The solver knows English alone: its message is matched with the templates that have translations, and what stood in
     the places of their {fields} goes into the translation. A lack of memory, which says nothing itself, is named.
     """
-    if isinstance(error, MemoryError):
+    if isinstance(said, MemoryError):
         return rpt_("There is not enough memory: choose a coarser fineness, or a larger largest face")
-    said = str(error)
+    said = str(said)
     for template, pattern in _PATTERNS:
         match = pattern.fullmatch(said)
         if match:

@@ -22,7 +22,7 @@ STAGES = {
     "solved": "calculado",
 }
 
-# What the solver refuses, by the templates of its messages: a test holds them to the solver's source.
+# What the solver refuses or remarks, by the templates of its messages: a test holds them to the solver's source.
 SOLVER = {
     "The scene has no surfaces; add at least one with scene.add(name, vertices, material)": (
         "A cena não tem superfícies; adicione ao menos uma"
@@ -89,6 +89,26 @@ SOLVER = {
     "lower the reflectances below 1": (
         "A luz se multiplica sem fim: uma cena fechada de refletância difusa 1 não tem regime permanente; "
         "reduza as refletâncias abaixo de 1"
+    ),
+    "Surface '{name}': some of its faces lie on one another; remove the doubles": (
+        "Superfície '{name}': algumas de suas faces estão umas sobre as outras; retire as repetidas"
+    ),
+    "Surfaces '{one}' and '{two}' lie on one another in one plane; remove what is doubled": (
+        "As superfícies '{one}' e '{two}' estão uma sobre a outra no mesmo plano; retire o que se repete"
+    ),
+    "Surfaces '{one}' and '{two}' lie on one another in one plane with different materials, so "
+    "which of them light meets is not defined; remove one, or move them apart": (
+        "As superfícies '{one}' e '{two}' estão uma sobre a outra no mesmo plano, com materiais diferentes, e não se "
+        "define qual delas a luz encontra; retire uma, ou afaste-as"
+    ),
+    "{count} more pairs of surfaces lie on one another": ("Mais {count} pares de superfícies estão uma sobre a outra"),
+    "All surfaces look outward and none sees another; if this is a room seen from inside, turn its normals "
+    "(reverse the order of the vertices)": (
+        "Todas as superfícies olham para fora e nenhuma vê outra; se este é um ambiente visto de dentro, vire suas "
+        "normais (inverta a ordem dos vértices)"
+    ),
+    "its faces look to different sides: across {count} edges neighbours are turned over; recalculate its normals": (
+        "suas faces olham para lados diferentes: em {count} arestas as vizinhas estão viradas; recalcule as normais"
     ),
     "Cancelled during '{stage}'": "Cancelado durante '{stage}'",
 }
@@ -451,6 +471,7 @@ _NOTICES = {
         "Instâncias e objetos que compartilham uma malha têm resultados só nas faces finas: {names}"
     ),
     "Material '{name}': {remark}": "Material '{name}': {remark}",
+    "Surface '{name}': {remark}": "Superfície '{name}': {remark}",
     "Material '{name}': {error}. See Properties > Material > LuzEspecular": (
         "Material '{name}': {error}. Veja Propriedades > Material > LuzEspecular"
     ),

@@ -344,6 +344,15 @@ def test_cancelling_keeps_the_results_of_before(addon, bpy, make, solve, monkeyp
     np.testing.assert_array_equal(lux(addon, floor), values)
 
 
+def test_what_the_solver_finds_odd_is_told(addon, bpy, make, solve):
+    make.square("Floor")
+    make.square("Carpet", size=0.5)
+    make.quick()
+    solve()
+    (notice,) = [n for n in bpy.context.scene.luzespecular.results.notices if n.level == "WARNING"]
+    assert "'Carpet' and 'Floor' lie on one another" in notice.text or "'Floor' and 'Carpet' lie" in notice.text
+
+
 @pytest.mark.parametrize(
     ("refusal", "told"),
     [("SceneError", "max_area 1e-09 m² would cut"), ("MemoryError", "There is not enough memory: choose a coarser")],

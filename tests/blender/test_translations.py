@@ -105,10 +105,10 @@ def test_nothing_is_translated_that_nobody_sees(addon):
 
 
 def solver_messages():
-    """Messages of the errors that the solver raises, with {} for what is filled in."""
+    """Messages of the errors that the solver raises and of what it notes, with {} for what is filled in."""
     for path in sorted((ADDON.parent / "core").glob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and _called(node) in ("SceneError", "Cancelled") and node.args:
+            if isinstance(node, ast.Call) and _called(node) in ("SceneError", "Cancelled", "append") and node.args:
                 parts = node.args[0].values if isinstance(node.args[0], ast.JoinedStr) else [node.args[0]]
                 yield "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in parts)
 
