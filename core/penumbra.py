@@ -24,6 +24,9 @@ from .sunlight import Sunlight, trace_sun, wide
 _NARROW = 0.7
 """Faces up to this many penumbrae wide have the disc clipped at their points; wider ones are clipped themselves."""
 
+_FEW_SCREENS = 3
+"""Behind more screens light varies within a penumbra: faces have to be half as wide."""
+
 _SPLITS = 3
 _SAMPLES = 20_000
 _TESTS = 500_000
@@ -37,6 +40,12 @@ _BARYCENTRIC = np.array(
 )
 _POINT_WEIGHTS = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
 """Radon's rule for means over triangles, exact to the fifth degree."""
+
+
+def _padded(shapes, width: int) -> np.ndarray:
+    """Polygons ``(m, v, 3)`` with the last vertex repeated up to a width."""
+    missing = width - shapes.shape[1]
+    return shapes if missing == 0 else np.pad(shapes, ((0, 0), (0, missing), (0, 0)), "edge")
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,10 +104,9 @@ class Screens:
     def joined(self, other: Screens) -> Screens:
         """These and others of the same space."""
         width = max(self.vertices.shape[1], other.vertices.shape[1])
-        both = [np.pad(s.vertices, ((0, 0), (0, width - s.vertices.shape[1]), (0, 0)), "edge") for s in (self, other)]
         return replace(
             self,
-            vertices=np.concatenate(both),
+            vertices=np.concatenate([_padded(s.vertices, width) for s in (self, other)]),
             window=np.concatenate([self.window, other.window]),
             transmittance=np.concatenate([self.transmittance, other.transmittance]),
         )
@@ -145,6 +153,10 @@ class Screens:
         cuts = ((centre + half).max(axis=0) > 0) & ((centre - half).min(axis=0) < 0) & true
         across = np.maximum(2 * half.mean(axis=0), 1e-300)
         return outside, inside, np.where(cuts, np.ptp(centre, axis=0) / across, np.nan)
+
+    def dimming(self, behind) -> np.ndarray:
+        """(n,) float: transmittance of all screens that something is wholly behind, ``behind`` (b, n)."""
+        return np.where(behind, self.transmittance[:, None], 1.0).prod(axis=0)
 
     def lines_at(self, k: int, points) -> np.ndarray:
         """(n, w, 3) float: screen ``k``'s edges as half-planes of the disc, seen from points ``(n, 3)``."""
@@ -399,7 +411,8 @@ def face_means(beam: DiscBeam, screens: Screens, part, rule, normal, triangles) 
         crossed = (factor > 0) & (cut.any(axis=0) | np.isinf(widest))
         lit = (factor > 0) & ~crossed
         np.add.at(means, owner[lit], weight[lit] * factor[lit] * whole)
-        by_disc = crossed & (widest <= _NARROW)
+        many = cut.sum(axis=0) > _FEW_SCREENS
+        by_disc = crossed & (widest <= np.where(many, 0.5 * _NARROW, _NARROW))
         by_face = crossed & ~by_disc & ((narrowest > _NARROW) | (depth == _SPLITS))
         for mine, method in ((by_disc, _clip_disc), (by_face, _clip_faces)):
             for rows in _chunks(np.flatnonzero(mine), len(rule[1])):
@@ -443,23 +456,18 @@ def _sort(beam: DiscBeam, screens: Screens, triangles):
         height = triangles @ beam.ahead.normal - beam.ahead.offset
         factor[(height <= screens.tolerance).all(axis=1)] = 0.0
         widest[(height < -screens.tolerance).any(axis=1)] = np.inf
-    for k in range(len(screens)):
-        alive = np.flatnonzero(factor > 0)
-        step = max(1, _TESTS // screens.forms[k].size)
-        one = screens.take([k])
-        for rows in (alive[start : start + step] for start in range(0, len(alive), step)):
-            outside, inside, ratio = (found[0] for found in one.relation(triangles[rows]))
-            if screens.window[k]:
-                factor[rows[outside]] = 0.0
-            else:
-                factor[rows[inside]] *= screens.transmittance[k]
+    for group in (np.flatnonzero(screens.window), np.flatnonzero(~screens.window)):
+        some, alive = screens.take(group), np.flatnonzero(factor > 0)
+        step = max(1, _TESTS // max(1, some.forms.size))
+        for rows in (alive[start : start + step] for start in range(0, len(alive) if len(group) else 0, step)):
+            outside, inside, ratio = some.relation(triangles[rows])
             crosses = ~(outside | inside)
-            cut[k, rows] = crosses
-            rows, ratio = rows[crosses], ratio[crosses]
-            if len(rows):
-                found = ~np.isnan(ratio)
-                narrowest[rows] = np.minimum(narrowest[rows], np.where(found, ratio, np.inf).min(axis=1))
-                widest[rows] = np.maximum(widest[rows], np.where(found, ratio, 0.0).max(axis=1))
+            cut[np.ix_(group, rows)] = crosses
+            beside, within = outside & some.window[:, None], inside & ~some.window[:, None]
+            factor[rows] *= np.where(beside.any(axis=0), 0.0, some.dimming(within))
+            edges = crosses[:, :, None] & ~np.isnan(ratio)
+            narrowest[rows] = np.minimum(narrowest[rows], np.where(edges, ratio, np.inf).min(axis=(0, 2)))
+            widest[rows] = np.maximum(widest[rows], np.where(edges, ratio, 0.0).max(axis=(0, 2)))
     return factor, cut, narrowest, widest
 
 
@@ -484,9 +492,10 @@ class _Pieces:
 
     @classmethod
     def joined(cls, parts: list[_Pieces]) -> _Pieces:
+        parts = [p for p in parts if len(p.rows)] or parts[:1]
         width = max(p.shapes.shape[1] for p in parts)
         return cls(
-            np.concatenate([np.pad(p.shapes, ((0, 0), (0, width - p.shapes.shape[1]), (0, 0)), "edge") for p in parts]),
+            np.concatenate([_padded(p.shapes, width) for p in parts]),
             np.concatenate([p.rows for p in parts]),
             np.concatenate([p.factor for p in parts]),
         )
@@ -578,7 +587,7 @@ def _at_points(beam: DiscBeam, near: Screens, part, points, normals) -> np.ndarr
         rows = rows[points[rows] @ beam.ahead.normal - beam.ahead.offset > near.tolerance]
     screens = beam.screens.joined(near)
     outside, inside, _ = screens.relation(points[rows, None])
-    factor = np.where(inside & ~screens.window[:, None], screens.transmittance[:, None], 1.0).prod(axis=0)
+    factor = screens.dimming(inside & ~screens.window[:, None])
     factor[(outside & screens.window[:, None]).any(axis=0)] = 0.0
     lit = factor > 0
     rows, factor, cut = rows[lit], factor[lit], ~(outside | inside)[:, lit]
