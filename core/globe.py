@@ -13,11 +13,11 @@ from functools import cached_property
 import numpy as np
 
 from .errors import SceneError
+from .hemisphere import POLAR_BANDS, Hemisphere, direction_of
 
 PARCELS_PER_BAND_FACTOR = 2.55
 MAX_BANDS = 2000
 _HORIZON_SUBDIVISION = 16
-_POLAR_BANDS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -300,7 +300,7 @@ class Globe:
             if sampled > 0:
                 weights[cut] *= (1.0 - weights[free].sum()) / sampled
         band = self.band_of[parcels]
-        odd = np.minimum(band, self.bands - 1 - band) < _POLAR_BANDS
+        odd = np.minimum(band, self.bands - 1 - band) < POLAR_BANDS
         odd[cut] = True
         keep = weights > 0
         chord = np.linalg.norm(self.corners[parcels] - directions[:, None], axis=2).max(axis=1)
@@ -315,48 +315,3 @@ class Globe:
             reach=2 * np.arcsin(0.5 * chord[keep]),
             globe=self,
         )
-
-
-@dataclass(frozen=True, eq=False)
-class Hemisphere:
-    """Directions that a plane looks at, with their cosine weights.
-
-    Attributes
-    ----------
-    normal : (3,) float, unit
-    parcels : (k,) int, index on the globe
-    directions : (k, 3) float, unit; the centre of what the plane sees of the parcel
-    weights : (k,) float, ∫ cos θ dω / π over that part; they sum to 1
-    half_widths : (k, 2) float [rad]
-    axes : (k, 2, 3) float, unit vectors along the half widths
-    reach : (k,) float
-        No corner of the parcel is farther from the direction than this [rad].
-    odd : (k,) bool
-        Parcels that a rectangle stands for badly: cut by the horizon, or next to a pole.
-    globe : Globe
-    """
-
-    normal: np.ndarray
-    parcels: np.ndarray
-    directions: np.ndarray
-    weights: np.ndarray
-    half_widths: np.ndarray
-    axes: np.ndarray
-    reach: np.ndarray
-    odd: np.ndarray
-    globe: Globe
-
-
-def direction_of(polar, azimuth) -> np.ndarray:
-    """Direction cosines (east, north, up) from polar angle and azimuth [rad].
-
-    Parameters
-    ----------
-    polar, azimuth : (m,) arrays of float
-
-    Returns
-    -------
-    (m, 3) float
-    """
-    s = np.sin(polar)
-    return np.stack([s * np.sin(azimuth), s * np.cos(azimuth), np.cos(polar)], axis=-1)

@@ -306,5 +306,99 @@ def lambert_form_factor(polygons, normal) -> np.ndarray:
     return -(along * ratio).sum(axis=1) / (2 * np.pi)
 
 
+def convex_moments(corners, lines) -> np.ndarray:
+    """Area and first moments of convex polygons in the plane, cut by half-planes.
+
+    The boundary of the cut polygon is what the half-planes leave of the polygon's sides and of its chords along their
+    lines (Liang & Barsky 1984), so that nothing need be sorted or joined; area and moments follow by Green's theorem.
+
+    Parameters
+    ----------
+    corners : (m, v, 2) float, counter-clockwise, padded by repeating the last
+    lines : (m, l, 3) float
+        ``a + b x + c y`` is positive in the half-plane; (b, c) a unit vector or nought.
+
+    Returns
+    -------
+    (m, 3) float
+        Area, ∫ x dA, ∫ y dA.
+    """
+    # polygons run along the last axis, which keeps all steps in long rows
+    x, y = np.ascontiguousarray(np.moveaxis(np.asarray(corners, float), 0, 2).swapaxes(0, 1))
+    a, b, c = np.ascontiguousarray(np.moveaxis(np.asarray(lines, float), 0, 2).swapaxes(0, 1))
+    across, up = _following(x) - x, _following(y) - y
+    height = b[:, None] * x
+    height += c[:, None] * y
+    height += a[:, None]
+    height[np.abs(height) < _ON_LINE] = 0.0
+    following = np.concatenate([height[:, 1:], height[:, :1]], axis=1)
+    begin, end, cut = _between_lines(height, following)
+    total = _boundary_moments(x, y, across, up, begin, end)
+    below, next_below = height < 0, following < 0
+    # along each line from where the polygon's boundary leaves the half-plane to where it comes back
+    crossing = below != next_below
+    cut[~crossing] = 0.0
+    cut_x, cut_y = cut * across, cut * up
+    cut_x += x
+    cut_y += y
+    enters, leaves = crossing & below, crossing & next_below
+    out_x, out_y = np.einsum("lvm,lvm->lm", cut_x, leaves), np.einsum("lvm,lvm->lm", cut_y, leaves)
+    in_x, in_y = np.einsum("lvm,lvm->lm", cut_x, enters), np.einsum("lvm,lvm->lm", cut_y, enters)
+    count = len(a)
+    begin, end = np.zeros_like(out_x), np.ones_like(out_x)
+    if count > 1:
+        own = np.arange(count)
+        # (line, chord, m)
+        first = a[:, None] + b[:, None] * out_x + c[:, None] * out_y
+        last = a[:, None] + b[:, None] * in_x + c[:, None] * in_y
+        first[np.abs(first) < _ON_LINE] = 0.0
+        last[np.abs(last) < _ON_LINE] = 0.0
+        twin = (first == 0) & (last == 0)
+        twin[own[:, None] >= own] = False
+        first[own, own] = last[own, own] = 1.0
+        begin, end, _ = _between_lines(first, last)
+        if twin.any():  # of lines that coincide one counts
+            twin &= b[:, None] * b + c[:, None] * c > 0
+            end[twin.any(axis=0)] = 0.0
+    total += _boundary_moments(out_x, out_y, in_x - out_x, in_y - out_y, begin, end)
+    return total.T
+
+
+_ON_LINE = 1e-13
+"""Distance from a line below which a corner counts as lying on it; polygons are of the size of one or less."""
+
+
+def _following(values):
+    return np.concatenate([values[1:], values[:1]])
+
+
+def _between_lines(first, last):
+    """Where segments (s, m) begin and end between lines, as shares of their length, and where each line cuts them.
+
+    ``first`` and ``last`` (l, s, m) are the heights of the segments' ends above the lines.
+    """
+    change = first - last
+    change[change == 0] = -1e-300
+    cut = first / change
+    rising = change < 0
+    begin = np.where(rising, cut, 0.0).max(axis=0, initial=0.0)
+    end = np.where(rising, 1.0, cut).min(axis=0, initial=1.0)
+    return np.minimum(begin, 1.0), np.maximum(end, 0.0), cut
+
+
+def _boundary_moments(x, y, across, up, begin, end) -> np.ndarray:
+    """(3, m) float: what parts of segments from (x, y) add to area and moments about the origin; all (s, m)."""
+    twice = np.maximum(end - begin, 0.0)
+    twice *= x * up - y * across
+    middle = begin + end
+    return np.stack(
+        [
+            0.5 * twice.sum(axis=0),
+            (twice * (2 * x + middle * across)).sum(axis=0) / 6,
+            (twice * (2 * y + middle * up)).sum(axis=0) / 6,
+        ]
+    )
+
+
 def _cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

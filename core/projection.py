@@ -59,6 +59,24 @@ class Beams:
         return self.hemisphere.axes[self.columns] @ self.turn.T
 
     @cached_property
+    def frames(self) -> np.ndarray:
+        """(k, 3, 3) float: centres of the beams and unit vectors across them, as `Hemisphere.frames`."""
+        return self.hemisphere.frames[self.columns] @ self.turn.T
+
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """(k, 3) float32: how the beams' weight changes across them, as `Hemisphere.slopes`."""
+        return (self.hemisphere.slopes[self.columns] @ self.turn.T).astype(np.float32)
+
+    @cached_property
+    def lags(self) -> np.ndarray:
+        """(k,) float32: how far each beam's middle, as its sides are arcs, lies behind its centre, in spans."""
+        hemisphere = self.hemisphere
+        polar = hemisphere.globe.polar[hemisphere.parcels[self.columns]]
+        lag = np.cos(polar) / np.sin(polar) * self.half_widths[:, 1] ** 2 / (12 * self.half_widths[:, 0])
+        return np.where(self.odd, 0.0, lag).astype(np.float32)
+
+    @cached_property
     def half_widths(self) -> np.ndarray:
         """(k, 2) float [rad]."""
         return self.hemisphere.half_widths[self.columns]
@@ -72,6 +90,11 @@ class Beams:
     def odd(self) -> np.ndarray:
         """(k,) bool: beams that a rectangle stands for badly."""
         return self.hemisphere.odd[self.columns]
+
+    @property
+    def bent(self) -> np.ndarray:
+        """(k,) bool: odd beams, and those that widen much from one end to the other."""
+        return self.hemisphere.bent[self.columns]
 
     def rays(self, index, order: int) -> np.ndarray:
         """(m, F, 3) float32: directions that make up some of the beams, see `Globe.scattered`."""

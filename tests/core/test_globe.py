@@ -202,3 +202,22 @@ def test_a_globe_cut_at_the_horizon(asked, got):
 def test_bands_out_of_range(bands):
     with pytest.raises(SceneError, match="bands must"):
         Globe(bands)
+
+
+@pytest.mark.parametrize("normal", [(0, 0, 1), (1, 0, 0), (0.3, -0.5, 0.8), (0, 0, -1)])
+def test_outlines_of_parcels_weigh_what_they_should(normal):
+    """Cosine-weighted areas on the tangent planes are the exact weights, but for these planes' distortion."""
+    half = Globe(60).hemisphere(normal)
+    weights = (half.moments * half.cosines).sum(axis=1) / math.pi
+    assert weights.sum() == pytest.approx(1, abs=1e-3)
+    np.testing.assert_allclose(weights[~half.odd], half.weights[~half.odd], rtol=7e-3)
+    np.testing.assert_allclose(weights, half.weights, atol=2e-2 * half.weights.max())
+
+
+def test_outlines_of_parcels_lie_above_the_plane():
+    half = Globe(24).hemisphere([0.6, 0, 0.8])
+    corners, counts = half.shapes
+    spatial = half.frames[:, :1] + np.einsum("kva,kac->kvc", corners, half.frames[:, 1:])
+    assert (spatial @ half.normal > -1e-12).all()
+    assert (counts <= corners.shape[1]).all() and counts.min() in (4, 5)
+    assert (half.moments[:, 0] > 0).all(), "counter-clockwise"

@@ -247,3 +247,33 @@ def test_lambert_takes_one_normal_for_each():
     assert got[0] == pytest.approx(parallel_corner(1, 1, 1))
     assert got[1] == pytest.approx(perpendicular_corner(1, 1, 1))
     assert len(polygons.lambert_form_factor(ceiling[:0], [0, 0, 1])) == 0
+
+
+def random_lines(rng, m, count):
+    turn = rng.uniform(0, 2 * np.pi, (m, count))
+    return np.stack([rng.uniform(-0.5, 0.8, (m, count)), np.cos(turn), np.sin(turn)], axis=2)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 3, 5])
+def test_moments_of_what_half_planes_leave_of_polygons(count):
+    """Against clipping one half-plane after the other; among the lines are doubled, opposite and touching ones."""
+    rng = np.random.default_rng(count)
+    corners = np.array([[-1, -1], [1, -1], [1.2, 0.5], [0.3, 1], [-1, 1], [-1, 1.0]]) * rng.uniform(0.5, 2, (400, 1, 1))
+    lines = random_lines(rng, 400, count)
+    if count > 1:
+        lines[:50, 1] = lines[:50, 0]
+        lines[50:100, 1] = -lines[50:100, 0]
+        lines[100:150, 0] = np.stack([corners[100:150, 0, 0] * -1, np.full(50, 1.0), np.zeros(50)], axis=1)
+        lines[150:200, 1] = np.stack([corners[150:200, 0, 1], np.zeros(50), np.full(50, -1.0)], axis=1)
+    left = np.concatenate([corners, np.zeros((400, 6, 1))], axis=2)
+    for k in range(count):
+        left = polygons.clip(left, lines[:, k, [1, 2, 2]] * [1, 1, 0], -lines[:, k, 0])
+    x, y = left[..., 0], left[..., 1]
+    following = np.roll(left, -1, axis=1)
+    twice = x * following[..., 1] - y * following[..., 0]
+    exact = [
+        twice.sum(axis=1) / 2,
+        (twice * (x + following[..., 0])).sum(axis=1) / 6,
+        (twice * (y + following[..., 1])).sum(axis=1) / 6,
+    ]
+    np.testing.assert_allclose(polygons.convex_moments(corners, lines), np.stack(exact, axis=1), atol=1e-12)

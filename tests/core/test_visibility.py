@@ -173,12 +173,9 @@ def with_hole(size, centre=(2.0, 1.5), height=2.5):
     ], np.array([[x - h, y + h, height], [x + h, y + h, height], [x + h, y - h, height], [x - h, y - h, height]])
 
 
-@pytest.mark.parametrize(("size", "rms"), [(1.0, 0.002), (0.5, 0.004), (0.3, 0.01), (0.1, 0.08)])
+@pytest.mark.parametrize(("size", "rms"), [(1.0, 1e-3), (0.5, 1e-3), (0.3, 2e-3), (0.1, 3e-3)])
 def test_a_hole_in_the_ceiling(size, rms):
-    """A square hole seen from all over a floor 2.5 m below; parcels are 0.13 m wide there.
-
-    The error grows as the hole shrinks to a parcel and below; light on the whole is right all the same.
-    """
+    """A square hole seen from all over a floor 2.5 m below; parcels are 0.13 m wide there."""
     around, hole = with_hole(size)
     points = np.random.default_rng(1).uniform([0.1, 0.1, 0], [3.9, 2.9, 0], (40, 3))
     ceiling = np.array([[-40, 40, 2.5], [40, 40, 2.5], [40, -40, 2.5], [-40, -40, 2.5]])

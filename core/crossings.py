@@ -1,0 +1,190 @@
+"""Obstacles whose edges cross beams, and the share that a single edge leaves of a beam."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from .projection import Beams, Obstacles, coverage
+from .views import Eye
+
+_WELL_BEHIND = 1.05
+"""How much farther than a wholly seen obstacle a corner must be to be hidden without a closer look."""
+
+_ALIGNED = 0.99
+"""Cosine between edges that count as parallel within one beam."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """Obstacles that beams may be crossed by, one row each (n); and the edges that cross (m).
+
+    Attributes
+    ----------
+    row, beam, obstacle : (n,) int
+    sine : (n, w) float32
+    outside, grazing : (n,) bool
+        The beam passes beside the obstacle; but not beside the circle around the beam.
+    edges : (n,) int
+        How many edges cross the beam; where none does, it meets the obstacle wholly or not at all.
+    pair : (m,) int
+        Which candidate an edge belongs to.
+    normal : (m, 3) float32
+    across : (m, 2) float32
+        The beam's sides, projected on the edge's normal.
+    place : (m,) float32
+    """
+
+    row: np.ndarray
+    beam: np.ndarray
+    obstacle: np.ndarray
+    sine: np.ndarray
+    outside: np.ndarray
+    grazing: np.ndarray
+    edges: np.ndarray
+    pair: np.ndarray
+    normal: np.ndarray
+    across: np.ndarray
+    place: np.ndarray
+
+    @classmethod
+    def of(cls, row, beam, obstacle, sine, planes, heights, beams: Beams) -> Candidates:
+        """Find the edges that really cross the beams: by their own shape, not the circle around them."""
+        reach = beams.reach.astype(np.float32)[beam]
+        pair, edge = np.nonzero(np.abs(sine) < reach[:, None])
+        normal = planes[row[pair], obstacle[pair], edge]
+        across = np.matmul(beams.spans[beam[pair]], normal[:, :, None])[:, :, 0]
+        place = sine[pair, edge] - beams.lags[beam[pair]] * across[:, 0]
+        np.abs(across, out=across)
+        support = np.where(beams.odd[beam[pair]], reach[pair], 0.5 * (across[:, 0] + across[:, 1]))
+        beyond = (sine <= -reach[:, None]).any(axis=1) | (heights[row, obstacle] == 0)
+        outside = beyond.copy()
+        outside[pair[place <= -support]] = True
+        grazing = outside & ~beyond
+        crossing = np.abs(place) < support
+        pair = pair[crossing]
+        edges = np.bincount(pair, minlength=len(row))
+        normal, across, place = normal[crossing], across[crossing], place[crossing]
+        return cls(row, beam, obstacle, sine, outside, grazing, edges, pair, normal, across, place)
+
+
+@dataclass(frozen=True, eq=False)
+class Crossed:
+    """Obstacles whose edges cross beams, sorted by beam and then by distance; all arrays of length n.
+
+    ``share`` and ``offset`` are those by the crossing edge alone, where there is just one; ``edge_sum`` is the sum of
+    the normals of the crossing edges' planes.
+    """
+
+    row: np.ndarray
+    beam: np.ndarray
+    obstacle: np.ndarray
+    sine: np.ndarray
+    share: np.ndarray
+    offset: np.ndarray
+    distance: np.ndarray
+    edges: np.ndarray
+    edge_sum: np.ndarray
+    group: np.ndarray
+
+    def take(self, index) -> Crossed:
+        """Some of them."""
+        return Crossed(*(getattr(self, f.name)[index] for f in fields(self)))
+
+    @property
+    def starts(self) -> np.ndarray:
+        """Where each beam's obstacles begin."""
+        return np.flatnonzero(np.concatenate(([True], self.group[1:] != self.group[:-1])))
+
+
+def settle_whole(
+    seen, nearest, start, candidates: Candidates, eye: Eye, beams: Beams, obstacles: Obstacles
+) -> np.ndarray:
+    """Enter obstacles that no edge parts from a beam into ``seen`` and ``nearest``, in place; gives their numbers."""
+    whole = np.flatnonzero((candidates.edges == 0) & ~candidates.outside)
+    row, beam, obstacle = candidates.row[whole], candidates.beam[whole], candidates.obstacle[whole]
+    towards = eye.towards(row, beam, beams)
+    distance = _distance_along(eye.heights, obstacles, row, obstacle, towards).astype(np.float32)
+    least = start[row, beam] if start.shape[1] > 1 else start[row, 0]
+    ahead = np.flatnonzero((distance > least) & (distance < nearest[row, beam]))
+    ahead = ahead[np.argsort(-distance[ahead], kind="stable")]  # the nearest is written last
+    seen[row[ahead], beam[ahead]] = obstacle[ahead]
+    nearest[row[ahead], beam[ahead]] = distance[ahead]
+    return np.unique(obstacle[ahead])
+
+
+def find_crossings(seen, candidates: Candidates, heights, beams: Beams, obstacles: Obstacles) -> Crossed:
+    """Candidates that edges really cross, with the share that one edge alone leaves them."""
+    row, beam, obstacle, edges = candidates.row, candidates.beam, candidates.obstacle, candidates.edges
+    pair, normal = candidates.pair, candidates.normal
+    offset = np.zeros((len(row), 3), np.float32)
+    covered, moment = coverage(candidates.place.astype(float), *candidates.across.T.astype(float))
+    # exact for one edge, and near enough where edges meet at a corner
+    share = np.exp(np.bincount(pair, weights=np.log(np.maximum(covered, 1e-30)), minlength=len(row)))
+    offset[pair] = (moment / np.maximum(covered, 1e-12))[:, None] * normal
+    # what is nearer shows at the part's own centre: an edge may stand on the obstacle behind it
+    towards = beams.directions.astype(np.float32)[beam] + offset
+    distance = _distance_along(heights, obstacles, row, obstacle, towards)
+    far = np.full(len(row), np.inf)
+    known = np.flatnonzero(seen[row, beam] >= 0)
+    far[known] = _distance_along(heights, obstacles, row[known], seen[row[known], beam[known]], towards[known])
+    behind = np.isfinite(distance) & (distance >= np.where(edges < 2, far, _WELL_BEHIND * far))
+    edge_sum = np.zeros((len(row), 3), np.float32)
+    lone = edges[pair] == 1
+    edge_sum[pair[lone]] = normal[lone]
+    np.add.at(edge_sum, pair[~lone], normal[~lone])
+    keep = np.flatnonzero(~candidates.outside & (edges > 0) & ~behind)
+    key = row[keep] * len(beams.directions) + beam[keep]
+    order = np.lexsort((distance[keep], key))
+    group = np.cumsum(np.diff(key[order], prepend=key[order[:1]]) > 0)
+    keep = keep[order]
+    return Crossed(
+        row[keep],
+        beam[keep],
+        obstacle[keep],
+        candidates.sine[keep],
+        share[keep],
+        offset[keep],
+        distance[keep],
+        edges[keep],
+        edge_sum[keep],
+        group,
+    )
+
+
+def subtract_aligned(crossed: Crossed) -> np.ndarray:
+    """Settle beams that two obstacles cross with one edge each, almost parallel: slats, shelves, slits.
+
+    Where both lie on the same side, the farther one shows only as far as it reaches beyond the nearer; its share is
+    lowered accordingly, in place.
+
+    Returns
+    -------
+    (groups,) bool
+        Beams whose shares are now exact.
+    """
+    starts = crossed.starts
+    size = np.diff(np.append(starts, len(crossed.group)))
+    front = np.minimum(starts, len(crossed.row) - 2) if len(crossed.row) > 1 else starts
+    back = front + (len(crossed.row) > 1)
+    pair = (size == 2) & (crossed.edges[front] == 1) & (crossed.edges[back] == 1)
+    alike = np.einsum("gc,gc->g", crossed.edge_sum[front], crossed.edge_sum[back])
+    nested = np.flatnonzero(pair & (alike > _ALIGNED))
+    a, b = front[nested], back[nested]
+    covered = np.maximum(crossed.share[b] - crossed.share[a], 0.0)
+    moment = crossed.share[b, None] * crossed.offset[b] - crossed.share[a, None] * crossed.offset[a]
+    crossed.offset[b] = np.where(covered[:, None] > 1e-6, moment / np.maximum(covered, 1e-6)[:, None], 0.0)
+    crossed.share[b] = covered
+    opposed = pair & (alike < -_ALIGNED)
+    a, b = front[opposed], back[opposed]
+    crossed.share[b] = np.minimum(crossed.share[b], 1.0 - crossed.share[a])
+    return pair & (np.abs(alike) > _ALIGNED)
+
+
+def _distance_along(heights, obstacles: Obstacles, row, obstacle, towards) -> np.ndarray:
+    """(n,) float: distance from receivers to obstacles' planes along directions; inf where these lead away."""
+    slope = np.einsum("nc,nc->n", towards, obstacles.normals[obstacle])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distance = heights[row, obstacle] / slope
+    return np.where(distance > 0, distance, np.inf)

@@ -1,0 +1,160 @@
+"""The half of the globe that a plane looks at: its parcels with cosine weights and exact outlines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import polygons
+
+if TYPE_CHECKING:
+    from .globe import Globe
+
+POLAR_BANDS = 2
+"""Bands around each pole whose parcels no rectangle stands for."""
+
+_BENT = 0.1
+
+_POLAR_ARC = 8
+"""Sides that stand for the outer arc of a parcel next to a pole."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hemisphere:
+    """Directions that a plane looks at, with their cosine weights.
+
+    Attributes
+    ----------
+    normal : (3,) float, unit
+    parcels : (k,) int, index on the globe
+    directions : (k, 3) float, unit; the centre of what the plane sees of the parcel
+    weights : (k,) float, ∫ cos θ dω / π over that part; they sum to 1
+    half_widths : (k, 2) float [rad]
+    axes : (k, 2, 3) float, unit vectors along the half widths
+    reach : (k,) float
+        No corner of the parcel is farther from the direction than this [rad].
+    odd : (k,) bool
+        Parcels that a rectangle stands for badly: cut by the horizon, or next to a pole.
+    globe : Globe
+    """
+
+    normal: np.ndarray
+    parcels: np.ndarray
+    directions: np.ndarray
+    weights: np.ndarray
+    half_widths: np.ndarray
+    axes: np.ndarray
+    reach: np.ndarray
+    odd: np.ndarray
+    globe: Globe
+
+    @cached_property
+    def frames(self) -> np.ndarray:
+        """(k, 3, 3) float: each direction and two unit vectors across it, right-handed."""
+        across = self.axes[:, 0] - np.einsum("kc,kc->k", self.axes[:, 0], self.directions)[:, None] * self.directions
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        return np.stack([self.directions, across, polygons.cross(self.directions, across)], axis=1)
+
+    @cached_property
+    def shapes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Outlines of what is seen of the parcels, on the planes that touch the sphere at `directions`.
+
+        Along the vectors of `frames`. The arcs between bands are chords, shifted to leave the areas right; next to the
+        poles there are more of them.
+
+        Returns
+        -------
+        corners : (k, v, 2) float
+            Counter-clockwise, padded.
+        counts : (k,) int
+            Corners before the padding.
+        """
+        band = self.globe.band_of[self.parcels]
+        southern = band >= self.globe.bands // 2
+        inner, outer = self.globe.polar_edges[band + southern], self.globe.polar_edges[band + ~southern]
+        turn = self.globe.azimuth[self.parcels][:, None] + np.multiply.outer(
+            0.5 * self.globe.azimuth_width[self.parcels], np.linspace(-1, 1, _POLAR_ARC + 1)
+        )
+        every = np.arange(len(band))
+        near = self._chord(every, inner, turn)[:, ::-1]
+        corners = self._cut(every, np.concatenate([self._chord(every, outer, turn), near], axis=1))
+        counts = np.full(len(band), corners.shape[1])
+        polar = np.flatnonzero(np.minimum(band, self.globe.bands - 1 - band) < POLAR_BANDS)
+        if len(polar):
+            arc = self._flat(polar, outer[polar, None], turn[polar])
+            many = self._cut(polar, np.concatenate([arc, near[polar]], axis=1))
+            counts[polar] = many.shape[1]
+            corners = _widened(corners, many.shape[1])
+            corners[polar] = many
+        return corners, counts
+
+    def _cut(self, index, corners) -> np.ndarray:
+        """Outlines ``(n, v, 2)`` on some of the tangent planes, turned counter-clockwise, and of them what is above."""
+        spatial = np.concatenate([corners, np.zeros((*corners.shape[:2], 1))], axis=2)
+        clockwise = polygons.newell_normal(spatial)[:, 2] < 0
+        spatial[clockwise] = spatial[clockwise, ::-1]
+        level = np.concatenate([self.cosines[index, 1:], np.zeros((len(index), 1))], axis=1)
+        height = self.cosines[index, 0]
+        low = np.flatnonzero((np.einsum("kvc,kc->kv", spatial, level) < -height[:, None]).any(axis=1))
+        if len(low):
+            above = polygons.clip(spatial[low], level[low], -height[low])
+            width = max(spatial.shape[1], above.shape[1])
+            spatial = _widened(spatial, width)
+            spatial[low] = _widened(above, width)
+        return spatial[:, :, :2]
+
+    def _chord(self, index, angle, turn) -> np.ndarray:
+        """(n, 2, 2) float: ends of an arc's chord, shifted so that as much lies beyond it as within."""
+        flat = self._flat(index, angle[:, None], turn[:, [0, turn.shape[1] // 2, -1]])
+        sagitta = flat[:, 1] - 0.5 * (flat[:, 0] + flat[:, 2])
+        return flat[:, ::2] + (2 / 3) * sagitta[:, None]
+
+    def _flat(self, index, angle, azimuth) -> np.ndarray:
+        """(n, a, 2) float: directions on some of the tangent planes."""
+        towards = direction_of(*np.broadcast_arrays(angle, azimuth))
+        place = np.einsum("kac,knc->kna", self.frames[index], towards)
+        return place[:, :, 1:] / place[:, :, :1]
+
+    @cached_property
+    def bent(self) -> np.ndarray:
+        """(k,) bool: odd parcels, and those a tenth wider or more at their end than in the middle."""
+        polar = self.globe.polar[self.parcels]
+        return self.odd | (np.abs(self.half_widths[:, 0] * np.cos(polar)) > _BENT * np.sin(polar))
+
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """(k, 3) float: relative change of a parcel's cosine-weighted width with direction, at its centre [1/rad]."""
+        narrowing = np.cos(self.globe.polar[self.parcels]) / np.sin(self.globe.polar[self.parcels])
+        return self.normal / (self.directions @ self.normal)[:, None] + narrowing[:, None] * self.axes[:, 0]
+
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """(k, 3) float: area of each outline and its first moments."""
+        return polygons.convex_moments(self.shapes[0], np.zeros((len(self.directions), 0, 3)))
+
+    @cached_property
+    def cosines(self) -> np.ndarray:
+        """(k, 3) float: products of the normal with the vectors of `frames`: the cosine and how it changes across."""
+        return self.frames @ self.normal
+
+
+def _widened(shapes, width: int) -> np.ndarray:
+    return np.concatenate([shapes, np.repeat(shapes[:, -1:], width - shapes.shape[1], axis=1)], axis=1)
+
+
+def direction_of(polar, azimuth) -> np.ndarray:
+    """Direction cosines (east, north, up) from polar angle and azimuth [rad].
+
+    Parameters
+    ----------
+    polar, azimuth : (m,) arrays of float
+
+    Returns
+    -------
+    (m, 3) float
+    """
+    s = np.sin(polar)
+    return np.stack([s * np.sin(azimuth), s * np.cos(azimuth), np.cos(polar)], axis=-1)

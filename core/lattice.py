@@ -1,0 +1,92 @@
+"""Beams that too many obstacles cross, settled by rays: each ray meets one obstacle, so nothing leaks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .crossings import Crossed
+from .projection import Beams, Obstacles
+from .views import Eye, Partial, along
+
+_ON_EDGE = 1e-6
+"""Rays this close to an edge [rad] count as inside, so that none slips between two obstacles that share it."""
+
+
+def sample(crossed: Crossed, background, order: int, eye: Eye, beams: Beams, obstacles: Obstacles):
+    """Shares of obstacles in beams, and of what none hides.
+
+    Parameters
+    ----------
+    crossed : Crossed
+    background : (g,) int
+        What is seen wholly behind the obstacles of each beam, or OPEN.
+    order : int
+        See `Globe.scattered`.
+    eye : Eye
+    beams : Beams
+    obstacles : Obstacles
+
+    Returns
+    -------
+    share, towards : (n,) and (n, 3) float
+    left, left_towards : (g,) and (g, 3) float
+    """
+    row, beam, obstacle, starts = crossed.row, crossed.beam, crossed.obstacle, crossed.starts
+    planes, heights, normal = eye.planes.astype(np.float32), eye.heights, eye.normal
+    local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(row))))
+    single = np.float32
+    rays = beams.rays(beam[starts], order)
+    weight = np.maximum(np.einsum("gsc,c->gs", rays, normal.astype(single)), 0.0)
+    if eye.partial is not None:
+        part = eye.part_of(row[starts], beam[starts], len(beams.directions))
+        _keep_partial(eye.partial, row[starts], part, rays, weight)
+    weight /= np.maximum(weight.sum(axis=1, keepdims=True), single(1e-30))
+    mine = rays[local]
+    inside = np.ones(mine.shape[:2], bool)
+    near = np.abs(crossed.sine) < 2 * beams.reach[beam][:, None]
+    for edge in range(near.shape[1]):
+        some = np.flatnonzero(near[:, edge])
+        if len(some):
+            across = planes[row[some], obstacle[some], edge]
+            inside[some] &= np.matmul(mine[some], across[:, :, None])[:, :, 0] >= -_ON_EDGE
+
+    def distances(rows, obstacles_, towards):
+        slope = np.matmul(towards, obstacles.normals[obstacles_].astype(single)[:, :, None])[:, :, 0]
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            away = heights[rows, obstacles_].astype(single)[:, None] / slope
+        away[~(away > 0)] = np.inf
+        return away
+
+    distance = distances(row, obstacle, mine)
+    distance[~inside] = np.inf
+    if eye.past is not None:
+        distance[distance < along(eye.past, eye.points[row[starts]][:, None], rays)[local]] = np.inf
+    known = background >= 0
+    best = np.minimum.reduceat(distance, starts, axis=0)
+    far = np.full(weight.shape, np.inf, single)
+    if known.any():
+        far[known] = distances(row[starts][known], background[known], rays[known])
+    limit = np.minimum(best, far * single(1 - 1e-6))
+    hit = (distance <= limit[local]) & (distance < np.inf)
+    winners = np.add.reduceat(hit, starts, axis=0, dtype=np.int32)
+    hit = hit * weight[local] / np.maximum(winners, 1).astype(single)[local]
+    free = np.where(winners == 0, weight, single(0))
+
+    def share_and_centre(part, towards):
+        share = part.sum(axis=1)
+        return share, np.matmul(part[:, None], towards)[:, 0] / np.maximum(share, single(1e-30))[:, None]
+
+    return *share_and_centre(hit, mine), *share_and_centre(free, rays)
+
+
+def _keep_partial(partial: Partial, row, part, rays, weight) -> None:
+    """Leave only the rays that come through the window; where there are none, the part's own direction, in place."""
+    groups = np.flatnonzero(part >= 0)
+    if not len(groups):
+        return
+    towards = partial.direction[part[groups]]
+    inside = (np.matmul(rays[groups], partial.window[row[groups]].transpose(0, 2, 1)) >= -_ON_EDGE).all(axis=2)
+    none = ~(inside & (weight[groups] > 0)).any(axis=1)
+    weight[groups] *= inside
+    weight[groups[none]] = 1.0
+    rays[groups[none]] = (towards / np.linalg.norm(towards, axis=1, keepdims=True))[none, None]

@@ -1,0 +1,283 @@
+"""Shares of beams that several edges cross, exactly: what convex obstacles that overlap each other leave open.
+
+Within one beam an obstacle is the beam's outline cut by a few half-planes: convex. So is what obstacles have in common,
+and by inclusion and exclusion the areas of all that is common to some of them tell what shows of each and what of none
+shows: each common part counts, by turns positive and negative, for its farthest obstacle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import polygons
+from .projection import Beams
+
+_NOTHING = 1e-9
+"""Areas smaller than this share of the beam are none."""
+
+_CLOSED = 1e-7
+"""An opening smaller than this share of the beam is the rounding of edges that meet."""
+
+_MOST_PAIRS = 24
+"""Overlaps of two obstacles in one beam beyond which the parts that are common to more would become too many."""
+
+_BATCH = 1_000
+"""Fewer regions with the same number of lines are cut together with those of more."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cuts:
+    """Obstacles in beams, ``n`` in all.
+
+    Attributes
+    ----------
+    beam : (n,) int
+    group : (n,) int
+        Number of the beam among those settled.
+    count : (n,) int
+        How many edges cut the beam.
+    edge : (sum of count, 3) float
+        Normals of the edges' planes, positive inside; obstacle by obstacle.
+    height : (n,) float
+        Signed distance from the receiver to the obstacle's plane, along its normal.
+    normal : (n, 3) float
+        Normal of the obstacle's plane.
+    window_count, window_edge : (g,) int and (sum of them, 3) float, or None
+        Edges of the window that each beam comes through, as for obstacles.
+    """
+
+    beam: np.ndarray
+    group: np.ndarray
+    count: np.ndarray
+    edge: np.ndarray
+    height: np.ndarray
+    normal: np.ndarray
+    window_count: np.ndarray | None = None
+    window_edge: np.ndarray | None = None
+
+    def distance(self, obstacle, towards) -> np.ndarray:
+        """(m,) float: how far obstacles' planes are, in lengths of ``towards``; inf where they are not ahead."""
+        return _along(self.height[obstacle], self.normal[obstacle], towards)
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """Planes between which obstacles show in each beam.
+
+    Attributes
+    ----------
+    near_height, near_normal : (g,) and (g, 3) float
+        The receiver's signed distance to the near plane and its normal; 0 where there is none.
+    far_height, far_normal : (g,) and (g, 3) float
+        The same of the far plane; inf where there is none.
+    """
+
+    near_height: np.ndarray
+    near_normal: np.ndarray
+    far_height: np.ndarray
+    far_normal: np.ndarray
+
+    def hold(self, group, distance, towards) -> np.ndarray:
+        """(n,) bool: whether what lies this many lengths of ``towards`` away is between them."""
+        far = _along(self.far_height[group], self.far_normal[group], towards)
+        near = np.where(distance < np.inf, distance, 0.0) * np.einsum("nc,nc->n", self.near_normal[group], towards)
+        return (distance < far) & (near >= self.near_height[group])
+
+
+@dataclass(frozen=True, eq=False)
+class Shares:
+    """What shows in beams.
+
+    Attributes
+    ----------
+    share : (n,) float
+        Of each obstacle, of the beam's cosine-weighted solid angle.
+    towards : (n, 3) float
+        The middle of what shows of it.
+    left : (g,) float
+        Of none.
+    left_towards : (g, 3) float
+    settled : (g,) bool
+        False for beams with too many overlaps, which show nothing yet.
+    """
+
+    share: np.ndarray
+    towards: np.ndarray
+    left: np.ndarray
+    left_towards: np.ndarray
+    settled: np.ndarray
+
+
+def settle(cuts: Cuts, beams: Beams, limits: Limits) -> Shares:
+    """Find what shows of obstacles in beams.
+
+    Parameters
+    ----------
+    cuts : Cuts
+    beams : Beams
+    limits : Limits
+
+    Returns
+    -------
+    Shares
+    """
+    region = _Regions(cuts, beams)
+    groups = len(limits.far_height)
+    every = np.arange(len(cuts.beam))
+    beam = np.empty(groups, np.int64)
+    beam[cuts.group] = cuts.beam
+    whole, cosines = region.whole(beam), beams.hemisphere.cosines[beams.columns[beam]]
+    alone = region.moments(every[:, None])
+    ahead = region.towards(cuts.beam, alone)
+    distance = cuts.distance(every, ahead)
+    shows = (alone[:, 0] > _NOTHING * whole[cuts.group, 0]) & (distance < np.inf)
+    shows &= limits.hold(cuts.group, distance, ahead)
+    visible = np.where(shows[:, None], alone, 0.0)
+
+    some = np.flatnonzero(shows)
+    some = some[np.argsort(cuts.group[some], kind="stable")]
+    last = np.searchsorted(cuts.group[some], cuts.group[some], side="right")  # where each one's group ends
+    members, moments = region.extended(some, np.arange(len(some))[:, None], last)
+    owner = cuts.group[some[members[:, 0]]]
+    settled = (np.bincount(owner, minlength=groups) <= _MOST_PAIRS) & (whole[:, 0] > 0)
+    members, moments = members[settled[owner]], moments[settled[owner]]
+    pairs = members[:, 0] * len(some) + members[:, 1]
+    sign = -1.0
+    while len(members):
+        farthest = region.farthest(some[members], moments)
+        for k in range(3):
+            visible[:, k] += sign * np.bincount(farthest, weights=moments[:, k], minlength=len(visible))
+        members, moments = region.extended(some, members, last, pairs)
+        sign = -sign
+
+    total = np.where(settled, np.einsum("gc,gc->g", whole, cosines), 1.0)
+    share = np.einsum("nc,nc->n", visible, cosines[cuts.group]) / total[cuts.group]
+    share = np.where(settled[cuts.group], np.maximum(share, 0.0), 0.0)
+    covered = np.bincount(cuts.group, weights=share, minlength=groups)
+    left = 1.0 - covered
+    left[left < _CLOSED] = 0.0
+    share /= (covered + left)[cuts.group]
+    rest = whole - np.stack([np.bincount(cuts.group, weights=v, minlength=groups) for v in visible.T], axis=1)
+    return Shares(share, region.towards(cuts.beam, visible), left, region.towards(beam, rest), settled)
+
+
+class _Regions:
+    """Parts of beams that are common to some obstacles."""
+
+    def __init__(self, cuts: Cuts, beams: Beams):
+        self.cuts, self.beams = cuts, beams
+        counts, edges = [cuts.count], [cuts.edge]
+        owners = [np.repeat(cuts.beam, cuts.count)]
+        if cuts.window_count is not None:  # windows follow the obstacles
+            beam = np.zeros(len(cuts.window_count), np.int64)
+            beam[cuts.group] = cuts.beam
+            counts.append(cuts.window_count)
+            edges.append(cuts.window_edge)
+            owners.append(np.repeat(beam, cuts.window_count))
+        self.count = np.concatenate(counts)
+        self.first = np.cumsum(self.count) - self.count
+        self.frames = beams.frames
+        lines = np.einsum("lac,lc->la", self.frames[np.concatenate(owners)], np.concatenate(edges))
+        self.lines = np.concatenate([lines, [[1.0, 0.0, 0.0]]])  # the last cuts nothing
+
+    def whole(self, beam) -> np.ndarray:
+        """(g, 3) float: area and first moments of each beam, within its window."""
+        moments = self.beams.hemisphere.moments[self.beams.columns[beam]]
+        if self.cuts.window_count is None:
+            return moments
+        some = np.flatnonzero(self.cuts.window_count)
+        moments[some] = self._cut(beam[some], len(self.cuts.beam) + some[:, None])
+        return moments
+
+    def towards(self, beam, moments) -> np.ndarray:
+        """(m, 3) float: the regions' middles; the beams' where they have no area."""
+        moments = np.where(moments[:, :1] > 1e-300, moments, [1.0, 0.0, 0.0])
+        return np.einsum("mac,ma->mc", self.frames[beam], moments / moments[:, :1])
+
+    def moments(self, members) -> np.ndarray:
+        """(m, 3) float: area and first moments of what is common to obstacles ``(m, s)``, on the beams' planes."""
+        if self.cuts.window_count is not None:
+            window = len(self.cuts.beam) + self.cuts.group[members[:, :1]]
+            members = np.concatenate([window, members], axis=1)
+        return self._cut(self.cuts.beam[members[:, -1]], members)
+
+    def _cut(self, beam, members) -> np.ndarray:
+        corners, counts = self.beams.hemisphere.shapes
+        out = np.empty((len(members), 3))
+        lines = self.count[members].sum(axis=1)
+        column = self.beams.columns[beam]
+        many = counts[column] > 5
+        for sides, kind in ((5, ~many), (corners.shape[1], many)):
+            mine = np.flatnonzero(kind)
+            mine = mine[np.argsort(lines[mine], kind="stable")]
+            ends = np.append(np.flatnonzero(np.diff(lines[mine])) + 1, len(mine))
+            begin = 0
+            for end in ends:
+                if end - begin >= _BATCH or (end == len(mine) and end > begin):
+                    now = mine[begin:end]
+                    shapes = corners[column[now], :sides]
+                    out[now] = polygons.convex_moments(shapes, self.lines[self._lines_of(members[now], lines[now])])
+                    begin = end
+        return out
+
+    def _lines_of(self, members, counts) -> np.ndarray:
+        """(m, l) int: lines that bound what obstacles have in common, padded."""
+        width = int(counts.max(initial=0))
+        index = np.full((len(members), width), len(self.lines) - 1)
+        index[np.arange(width) < counts[:, None]] = _ranges(self.first[members].ravel(), self.count[members].ravel())
+        return index
+
+    def extended(self, some, members, last, pairs=None):
+        """What obstacles have in common with one more of their beam, where there is anything.
+
+        Parameters
+        ----------
+        some : (k,) int
+            Obstacles that show, by group.
+        members : (m, s) int
+            Places in ``some``, ascending along each row.
+        last : (k,) int
+            Where in ``some`` each one's group ends.
+        pairs : (p,) int, optional
+            Places of two that have something in common, as one ascending number.
+
+        Returns
+        -------
+        members : (n, s + 1) int
+        moments : (n, 3) float
+        """
+        begin = members[:, -1] + 1
+        more = last[members[:, -1]] - begin
+        row = np.repeat(np.arange(len(members)), more)
+        other = _ranges(begin, more)
+        if pairs is not None and len(row):
+            key = members[row, -1] * len(some) + other
+            place = np.minimum(np.searchsorted(pairs, key), len(pairs) - 1)
+            known = pairs[place] == key
+            row, other = row[known], other[known]
+        together = np.concatenate([members[row], other[:, None]], axis=1)
+        moments = self.moments(some[together])
+        column = self.beams.columns[self.cuts.beam[some[other]]]
+        real = moments[:, 0] > _NOTHING * self.beams.hemisphere.moments[column, 0]
+        return together[real], moments[real]
+
+    def farthest(self, members, moments) -> np.ndarray:
+        """(m,) int: of the obstacles ``(m, s)`` that have a region in common, the one seen last."""
+        towards = self.towards(self.cuts.beam[members[:, 0]], moments)
+        distance = np.stack([self.cuts.distance(members[:, k], towards) for k in range(members.shape[1])], axis=1)
+        return members[np.arange(len(members)), np.argmax(distance, axis=1)]
+
+
+def _along(height, normal, towards) -> np.ndarray:
+    """(n,) float: distance to planes, in lengths of ``towards``; inf where they are not ahead."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = height / np.einsum("nc,nc->n", normal, towards)
+    return np.where(along > 0, along, np.inf)
+
+
+def _ranges(begin, count) -> np.ndarray:
+    """Numbers from each begin on, one run after the other."""
+    total = int(count.sum())
+    return np.arange(total) + np.repeat(begin - (np.cumsum(count) - count), count)

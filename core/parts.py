@@ -1,0 +1,164 @@
+"""Beams that edges cross: what shows of each obstacle in them, and what of the sky.
+
+An edge alone, or one that two obstacles share, divides a beam in closed form; where more edges meet, overlaps are found
+exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from . import lattice, overlaps
+from .crossings import Candidates, Crossed, find_crossings, subtract_aligned
+from .projection import Beams, Obstacles
+from .views import OPEN, SHARED, Eye, View
+
+_SEAM = 1e-5
+"""Edges whose planes through the receiver are this close [rad], with an obstacle on either side, leave no opening."""
+
+_MOST = 10
+"""More obstacles than this in one beam are settled by rays."""
+
+_FEW_RAYS, _MANY_RAYS = 8, 11
+"""Order of the lattice of rays: 21 in a beam that shows no sky, 89 in others."""
+
+_SLIT = 0.3
+"""Openings between two edges that are this share of a beam or less are found exactly."""
+
+_SAME_EDGE = 1e-4
+"""Shares of two obstacles at one edge that sum to 1 this closely belong to obstacles that share the edge."""
+
+
+def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beams: Beams, obstacles: Obstacles) -> View:
+    """Settle the beams that edges cross: SHARED in ``seen``, and their parts listed in the view."""
+    heights = eye.heights
+    crossed = find_crossings(seen, candidates, heights, beams, obstacles)
+    if not len(crossed.row):
+        empty = np.zeros(0, np.int64)
+        return View(seen, empty, empty, empty, np.zeros(0), np.zeros((0, 3)), nearest, possible, heights)
+    starts, group = crossed.starts, crossed.group
+    aligned = subtract_aligned(crossed)
+    head = crossed.row[starts], crossed.beam[starts]
+    background = seen[head]
+    total = np.add.reduceat(crossed.share, starts)
+    size = np.diff(np.append(starts, len(group)))
+    most_edges = np.maximum.reduceat(crossed.edges, starts)
+    lone = (size == 1) & (most_edges <= 1)
+    joined = (size == 2) & (most_edges == 1) & (np.abs(total - 1) < _SAME_EDGE)
+    joined &= np.add.reduceat(crossed.edges, starts) == 2
+    ahead = np.isfinite(np.maximum.reduceat(crossed.distance, starts))
+    simple = (joined | lone | aligned) & ahead
+    # a slit is a difference of two shares, and sky beside an edge one of a parcel and a rectangle: small ones want more
+    slit = (size == 2) & (total > 1 - _SLIT)
+    simple &= joined | (background != OPEN) | ~(beams.bent[head[1]] | slit)
+    partial = eye.part_of(*head, len(beams.directions)) >= 0
+    simple &= ~partial
+    # every crossing edge met by an opposite one: a corner where obstacles close
+    closed = np.zeros(len(starts), bool)
+    closed[~simple] = np.linalg.norm(_group_sums(crossed.edge_sum, starts, ~simple), axis=1) < _SEAM
+
+    # several edges, but no opening: shares by each edge alone, brought to a sum of 1
+    filled = ~simple & (total > 1e-9) & closed & (background == OPEN) & ~partial
+    # the part's share of the cosine-weighted beam, to first order
+    share = crossed.share * np.clip(1 + np.einsum("nc,nc->n", crossed.offset, beams.slopes[crossed.beam]), 0.0, 2.0)
+    weighted = np.add.reduceat(share, starts)
+    # two obstacles share the edge: nothing is left between them, to the last bit
+    whole = joined | filled
+    share /= np.where(whole, weighted, 1.0)[group]
+    left = np.where(whole, 0.0, np.clip(1.0 - weighted, 0.0, 1.0))
+    towards = beams.directions[crossed.beam] + crossed.offset
+    left_towards = beams.directions[head[1]]
+    rest = simple & (left > 0)
+    moment = _group_sums(crossed.share[:, None] * crossed.offset, starts, rest)
+    left_towards[rest] -= moment / np.maximum(1.0 - total[rest], 1e-3)[:, None]
+
+    unsettled = ~simple & ~filled
+    exactly = unsettled & ((background == OPEN) | (size <= 2)) & (size <= _MOST)
+    mine, groups = np.flatnonzero(exactly[group]), np.flatnonzero(exactly)
+    more = np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 3))
+    if len(groups):
+        grazing, cuts = _cuts(crossed.take(mine), candidates, eye, beams, obstacles)
+        cuts = _with_windows(cuts, eye, *(x[groups] for x in head), beams)
+        limits = _limits(eye, head[0][groups], background[groups], obstacles)
+        exact = overlaps.settle(cuts, beams, limits)
+        share[mine], towards[mine] = exact.share[: len(mine)], exact.towards[: len(mine)]
+        left[groups], left_towards[groups] = exact.left, exact.left_towards
+        more = grazing, exact.share[len(mine) :], exact.towards[len(mine) :]
+        unsettled[groups[exact.settled]] = False
+    for order, sky in ((_FEW_RAYS, False), (_MANY_RAYS, True)):
+        by_rays = unsettled & ((background == OPEN) == sky)
+        mine, groups = np.flatnonzero(by_rays[group]), np.flatnonzero(by_rays)
+        if len(groups):
+            share[mine], towards[mine], left[groups], left_towards[groups] = lattice.sample(
+                crossed.take(mine), background[groups], order, eye, beams, obstacles
+            )
+    seen[head] = SHARED
+    remains, lit = left > 1e-9, share > 1e-9
+    return View(
+        seen,
+        np.concatenate([crossed.row[lit], head[0][remains], candidates.row[more[0]]]),
+        np.concatenate([crossed.beam[lit], head[1][remains], candidates.beam[more[0]]]),
+        np.concatenate([crossed.obstacle[lit], background[remains], candidates.obstacle[more[0]]]),
+        np.concatenate([share[lit], left[remains], more[1]]),
+        np.concatenate([towards[lit], left_towards[remains], more[2]]),
+        nearest,
+        possible,
+        heights,
+    )
+
+
+def _group_sums(values: np.ndarray, starts: np.ndarray, which: np.ndarray) -> np.ndarray:
+    """(w, c) float: sums of values ``(n, c)`` over some of the groups that begin at ``starts``."""
+    rows = np.flatnonzero(np.repeat(which, np.diff(np.append(starts, len(values)))))
+    if not len(rows):
+        return np.zeros((0, values.shape[1]))
+    sizes = np.diff(np.append(starts, len(values)))[which]
+    return np.add.reduceat(values[rows], np.cumsum(sizes) - sizes, axis=0)
+
+
+def _cuts(crossed: Crossed, candidates: Candidates, eye: Eye, beams: Beams, obstacles: Obstacles):
+    """Which candidates graze the beams that obstacles cross; and how these, and after them those, cut the beams."""
+    starts = crossed.starts
+    keys = crossed.row[starts] * len(beams.directions) + crossed.beam[starts]
+    grazing = np.flatnonzero(candidates.grazing)
+    key = candidates.row[grazing] * len(beams.directions) + candidates.beam[grazing]
+    place = np.minimum(np.searchsorted(keys, key), len(keys) - 1)
+    mine = keys[place] == key
+    grazing, place = grazing[mine], place[mine]
+    sizes = np.diff(np.append(starts, len(crossed.row)))
+    row = np.concatenate([crossed.row, candidates.row[grazing]])
+    beam = np.concatenate([crossed.beam, candidates.beam[grazing]])
+    obstacle = np.concatenate([crossed.obstacle, candidates.obstacle[grazing]])
+    sine = np.concatenate([crossed.sine, candidates.sine[grazing]])
+    pair, edge = np.nonzero(np.abs(sine) < beams.reach[beam][:, None])
+    return grazing, overlaps.Cuts(
+        beam=beam,
+        group=np.concatenate([np.repeat(np.arange(len(starts)), sizes), place]),
+        count=np.bincount(pair, minlength=len(row)),
+        edge=eye.planes[row[pair], obstacle[pair], edge],
+        height=eye.heights[row, obstacle],
+        normal=obstacles.normals[obstacle],
+    )
+
+
+def _with_windows(cuts: overlaps.Cuts, eye: Eye, row, beam, beams: Beams) -> overlaps.Cuts:
+    """The cuts, within the windows that the beams of each group come through."""
+    if eye.partial is None:
+        return cuts
+    group = np.flatnonzero(eye.part_of(row, beam, len(beams.directions)) >= 0)
+    edges = eye.partial.window[row[group]]
+    sine = np.einsum("gwc,gc->gw", edges, beams.directions[beam[group]])
+    pair, edge = np.nonzero((sine < beams.reach[beam[group], None]) & edges.any(axis=2))
+    count = np.bincount(group[pair], minlength=len(row))
+    return replace(cuts, window_count=count, window_edge=edges[pair, edge].astype(float))
+
+
+def _limits(eye: Eye, row, background, obstacles: Obstacles) -> overlaps.Limits:
+    """Between which planes obstacles show: beyond the mirror or pane, before what is seen wholly."""
+    height = np.where(background >= 0, eye.heights[row, background], np.inf)
+    start, facing = np.zeros(len(row)), np.zeros(3)
+    if eye.past is not None:
+        start, facing = (eye.past.offset - eye.points[row] @ eye.past.normal) * (1 - 1e-5), eye.past.normal
+    return overlaps.Limits(start, np.broadcast_to(facing, (len(row), 3)), height, obstacles.normals[background])
