@@ -1,22 +1,23 @@
 """Sunlight from the Sun's whole disc: true penumbrae, straight, through panes and by chains of mirrors.
 
-Whether light from a point of the disc (u, v) reaches a point x past an edge is a bilinear question: the edge's plane
-through x is affine in x and linear in the direction. Where all corners of a face say the same for the whole disc, the
-face is wholly lit or wholly dark. For the rest one of the two integrals is exact and the other by quadrature: penumbrae
-wider than the face see the disc clipped at points of the face, narrower ones the face clipped for points of the disc.
-Faces that both kinds of penumbra cross are split.
+What a face gets is a mean over the face and over the disc. Where the corners of a face say that nothing cuts the disc,
+the face is wholly lit or wholly dark. For the rest one of the two means is exact and the other by quadrature: points of
+faces narrower than the penumbra see the disc clipped, faces wider than it are clipped for points of the disc, and
+faces that both kinds of penumbra cross are split.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from . import disc, polygons
-from .projection import HalfSpace, reflect, reflect_points
+from .materials import Material
+from .projection import HalfSpace
+from .screens import Pieces, Screens
 from .specular import DEEPEST_CHAIN, Outlines
 from .sun import Sun
 from .sunlight import Sunlight, trace_sun, wide
@@ -30,7 +31,8 @@ _FEW_SCREENS = 3
 _SPLITS = 3
 _SAMPLES = 20_000
 _TESTS = 500_000
-_SPECK = 1e-12
+_DARK = 1e-9
+"""Of a beam: less on all elements of a mirror is rounding, and not followed."""
 
 _BARYCENTRIC = np.array(
     [
@@ -40,136 +42,6 @@ _BARYCENTRIC = np.array(
 )
 _POINT_WEIGHTS = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
 """Radon's rule for means over triangles, exact to the fifth degree."""
-
-
-def _padded(shapes, width: int) -> np.ndarray:
-    """Polygons ``(m, v, 3)`` with the last vertex repeated up to a width."""
-    missing = width - shapes.shape[1]
-    return shapes if missing == 0 else np.pad(shapes, ((0, 0), (0, missing), (0, 0)), "edge")
-
-
-@dataclass(frozen=True, eq=False)
-class Screens:
-    """What stands between receivers and the Sun's disc, in the receivers' mirrored space.
-
-    Attributes
-    ----------
-    vertices : (b, w, 3) float, padded
-    window : (b,) bool
-        Mirrors on the way, which light has to pass; the others stop it.
-    transmittance : (b,) float
-    axes : (3, 3) float
-        Of the disc: its centre's direction, and two radii.
-    tolerance : float
-    """
-
-    vertices: np.ndarray
-    window: np.ndarray
-    transmittance: np.ndarray
-    axes: np.ndarray
-    tolerance: float
-
-    def __post_init__(self):
-        after = np.roll(self.vertices, -1, axis=1)
-        edge = after - self.vertices
-        length = np.linalg.norm(edge, axis=2)
-        normal = polygons.newell_normal(self.vertices)
-        normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-        # (a - x) x (b - x) · d = (a x b) · d - x · ((b - a) x d), for each of the axes d
-        offset = polygons.cross(self.vertices, after) @ self.axes.T
-        slope = -polygons.cross(edge[:, :, None], self.axes)
-        towards = normal @ self.axes.T
-        for name, value in (
-            ("true", length > self.tolerance * 1e-3),
-            ("forms", np.concatenate([offset[..., None], slope], axis=3)),  # (b, w, 3, 4)
-            ("normals", normal),
-            ("offsets", np.einsum("bc,bc->b", normal, self.vertices.mean(axis=1))),
-            ("towards", towards),
-            ("edge_on", np.abs(towards[:, 0]) <= np.hypot(towards[:, 1], towards[:, 2])),
-        ):
-            object.__setattr__(self, name, value)
-
-    def __len__(self) -> int:
-        return len(self.vertices)
-
-    def take(self, index) -> Screens:
-        """Some of the screens."""
-        return replace(
-            self,
-            vertices=self.vertices[index],
-            window=self.window[index],
-            transmittance=self.transmittance[index],
-        )
-
-    def joined(self, other: Screens) -> Screens:
-        """These and others of the same space."""
-        width = max(self.vertices.shape[1], other.vertices.shape[1])
-        return replace(
-            self,
-            vertices=np.concatenate([_padded(s.vertices, width) for s in (self, other)]),
-            window=np.concatenate([self.window, other.window]),
-            transmittance=np.concatenate([self.transmittance, other.transmittance]),
-        )
-
-    def reflected(self, normal, offset: float) -> Screens:
-        """Their images in a mirror."""
-        return replace(self, vertices=reflect_points(self.vertices, normal, offset), axes=reflect(self.axes, normal))
-
-    def relation(self, points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """How the disc, seen from anywhere within the hulls of points, lies to the screens.
-
-        Parameters
-        ----------
-        points : (n, c, 3) float
-            Corners; what holds at all of them holds between, since an edge's margin is convex over space.
-
-        Returns
-        -------
-        outside, inside : (b, n) bool
-            Wholly beside a screen; wholly behind it. Neither: the disc may be cut.
-        ratio : (b, n, w) float
-            For edges that may cut it the hull's width over the penumbra's, else NaN.
-        """
-        n, count = points.shape[:2]
-        corners = np.concatenate([np.ones((n, count, 1)), points], axis=2)
-        width = self.vertices.shape[1]
-        # corners first: NumPy is slow where it reduces over a short last axis
-        value = corners.transpose(1, 0, 2).reshape(-1, 4) @ self.forms.reshape(-1, 4).T
-        value = np.moveaxis(value.reshape(count, n, len(self), width, 3), 2, 1)
-        centre, half = value[..., 0], np.hypot(value[..., 1], value[..., 2])
-        height = self.offsets[:, None] - np.einsum("bk,nck->cbn", self.normals, points)
-        true = self.true[:, None]
-        outside, inside = np.ones((len(self), n), bool), np.zeros((len(self), n), bool)
-        for side in (1.0, -1.0):
-            mine = self.edge_on | (np.sign(self.towards[:, 0]) == side)
-            if not mine.any():
-                continue
-            beside = (((side * centre + half).max(axis=0) <= 0) & true).any(axis=2)
-            beside |= (side * height <= self.tolerance).all(axis=0)
-            outside = np.where(mine[:, None], outside & beside, outside)
-            behind = (((side * centre - half).min(axis=0) >= 0) | ~true).all(axis=2)
-            behind &= (side * height > self.tolerance).all(axis=0)
-            inside = np.where((mine & ~self.edge_on)[:, None], behind, inside)
-        cuts = ((centre + half).max(axis=0) > 0) & ((centre - half).min(axis=0) < 0) & true
-        across = np.maximum(2 * half.mean(axis=0), 1e-300)
-        return outside, inside, np.where(cuts, np.ptp(centre, axis=0) / across, np.nan)
-
-    def dimming(self, behind) -> np.ndarray:
-        """(n,) float: transmittance of all screens that something is wholly behind, ``behind`` (b, n)."""
-        return np.where(behind, self.transmittance[:, None], 1.0).prod(axis=0)
-
-    def lines_at(self, k: int, points) -> np.ndarray:
-        """(n, w, 3) float: screen ``k``'s edges as half-planes of the disc, seen from points ``(n, 3)``."""
-        form = self.forms[k]
-        height = self.offsets[k] - points @ self.normals[k]
-        lines = form[..., 0] + np.einsum("wkj,nj->nwk", form[..., 1:], points)
-        return np.sign(height)[:, None, None] * lines
-
-    def planes_for(self, k: int, places) -> tuple[np.ndarray, np.ndarray]:
-        """Normals (n, w, 3) and offsets (n, w) of screen ``k``'s prisms for points ``(n, 3)`` of the disc."""
-        planes = np.einsum("nk,wkj->nwj", places, self.forms[k])
-        planes *= np.sign(places @ self.towards[k])[:, None, None]
-        return planes[..., 1:], -planes[..., 0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,6 +112,29 @@ class DiscSunlight(Sunlight):
         return self.normal_illuminance * out
 
 
+@dataclass(frozen=True, eq=False)
+class _Target:
+    """A side of a sheet.
+
+    Attributes
+    ----------
+    plane : HalfSpace
+        Before it.
+    outlines : (k,) int
+    receivers : (n,) int
+        Elements; none on the backs of panes, which mirror all the same.
+    triangles : (n, 3, 3) float
+        The elements, or those of the front.
+    mirror : Material or None
+    """
+
+    plane: HalfSpace
+    outlines: np.ndarray
+    receivers: np.ndarray
+    triangles: np.ndarray
+    mirror: Material | None
+
+
 def trace_disc(
     outlines: Outlines, sun: Sun, elements, element_sheet, outline_sheet, cutoff: float, checkpoint: Callable[[], None]
 ) -> DiscSunlight:
@@ -265,12 +160,8 @@ def trace_disc(
         blur of their edges is a redistribution (`Sunlight.blur`).
     """
     axes, level = sun.disc_axes, sun.disc_horizon
-    part = polygons.clip(disc.SQUARE[None], np.array([-level, 0.0, 1.0]))
-    sheets = [np.flatnonzero(outline_sheet == k) for k in range(int(outline_sheet.max()) + 1)]
-    order = np.argsort(element_sheet, kind="stable")
-    bounds = np.searchsorted(element_sheet[order], np.arange(2 * len(sheets) + 1))
-    members = [order[a:b] for a, b in itertools.pairwise(bounds)]
-    rule = disc.quadrature(level)
+    part, rule = polygons.clip(disc.SQUARE[None], np.array([-level, 0.0, 1.0])), disc.quadrature(level)
+    targets = list(_targets(outlines, elements, element_sheet, outline_sheet))
     values, truncated = np.zeros((2, len(elements))), 0.0
     none = Screens(np.zeros((0, 3, 3)), np.zeros(0, bool), np.zeros(0), axes, outlines.tolerance)
     waiting, beams = [DiscBeam(none, 1.0, None, 0)], []
@@ -278,43 +169,62 @@ def trace_disc(
         beam = waiting.pop(0)
         beams.append(beam)
         near = _ahead(outlines, beam)
-        for number, mine in enumerate(sheets):
+        for target in targets:
             checkpoint()
-            material = outlines.materials[mine[0]]
-            for side in (1.0, -1.0):
-                receivers = members[number if side > 0 else number + len(sheets)]
-                mirrors = material.is_specular and (
-                    side > 0 or outlines.two_sided[mine[0]] or material.reflects_both_sides
-                )
-                if not len(receivers) and not mirrors:
-                    continue
-                triangles = elements[receivers if len(receivers) else members[number]]
-                plane = HalfSpace(side * outlines.normals[mine[0]], side * float(outlines.offsets[mine[0]]))
-                whole = float(disc.moments(_facing(part, plane.normal, beam.axes))[0] @ (beam.axes @ plane.normal))
-                screens = _before(near, beam, plane, outlines.vertices[mine].reshape(-1, 3)) if whole > 0 else None
-                if screens is None:
-                    continue
-                mean = face_means(beam, screens, part, rule, plane.normal, triangles)
-                values[min(beam.order, 1), receivers] += beam.share * mean[: len(receivers)]
-                strongest = float(mean.max()) / whole
-                if not mirrors or strongest <= _SPECK:
-                    continue
-                share = beam.share * float(material.specular_at(plane.normal @ beam.axes[0]))
-                if share * strongest < cutoff or beam.order >= DEEPEST_CHAIN:
-                    truncated += share * float(mean @ polygons.areas(triangles))
-                    continue
-                waiting += [
-                    following
-                    for o in mine
-                    if (following := _thrown(beam, screens, plane, outlines.vertices[o], share)) is not None
-                ]
-    vector = axes.T @ disc.moments(part)[0]
-    length = float(np.linalg.norm(vector))
-    sharp = trace_sun(outlines, vector / length, length * sun.normal_illuminance, cutoff, checkpoint)
-    collimated = sum(sharp.on_elements(elements, element_sheet, outline_sheet))
+            normal = target.plane.normal
+            whole = float(disc.moments(_facing(part, normal, beam.axes))[0] @ (beam.axes @ normal))
+            vertices = outlines.vertices[target.outlines].reshape(-1, 3)
+            screens = _before(near, beam, target.plane, vertices) if whole > 0 else None
+            if screens is None:
+                continue
+            mean = face_means(beam, screens, part, rule, normal, target.triangles)
+            values[min(beam.order, 1), target.receivers] += beam.share * mean[: len(target.receivers)]
+            if target.mirror is None or mean.max() <= _DARK * whole:
+                continue
+            share = beam.share * float(target.mirror.specular_at(normal @ beam.axes[0]))
+            if share < cutoff or beam.order >= DEEPEST_CHAIN:
+                truncated += share * float(mean @ polygons.areas(target.triangles))
+                continue
+            thrown = (_thrown(beam, screens, target.plane, outlines.vertices[o], share) for o in target.outlines)
+            waiting += [following for following in thrown if following is not None]
+    sharp = _collimated(outlines, sun, axes.T @ disc.moments(part)[0], cutoff, checkpoint)
     direct, specular = sun.normal_illuminance * values
-    lumens = truncated * sun.normal_illuminance
-    return DiscSunlight(beams, sharp.patches, lumens, part, sun.normal_illuminance, direct, specular, collimated)
+    return DiscSunlight(
+        beams,
+        sharp.patches,
+        truncated * sun.normal_illuminance,
+        part,
+        sun.normal_illuminance,
+        direct,
+        specular,
+        sum(sharp.on_elements(elements, element_sheet, outline_sheet)),
+    )
+
+
+def _collimated(outlines: Outlines, sun: Sun, vector, cutoff: float, checkpoint) -> Sunlight:
+    """Sunlight of parallel rays with the disc's vector illuminance, relative to the normal illuminance."""
+    length = float(np.linalg.norm(vector))
+    return trace_sun(outlines, vector / length, length * sun.normal_illuminance, cutoff, checkpoint)
+
+
+def _targets(outlines: Outlines, elements, element_sheet, outline_sheet) -> Iterator[_Target]:
+    """Sides of sheets that receive or mirror."""
+    sheets = int(outline_sheet.max()) + 1
+    order = np.argsort(element_sheet, kind="stable")
+    bounds = np.searchsorted(element_sheet[order], np.arange(2 * sheets + 1))
+    members = [order[a:b] for a, b in itertools.pairwise(bounds)]
+    for number in range(sheets):
+        mine = np.flatnonzero(outline_sheet == number)
+        normal, offset = outlines.normals[mine[0]], float(outlines.offsets[mine[0]])
+        material = outlines.materials[mine[0]]
+        both = outlines.two_sided[mine[0]] or material.reflects_both_sides
+        for front in (True, False):
+            receivers = members[number if front else number + sheets]
+            mirror = material if material.is_specular and (front or both) else None
+            if len(receivers) or mirror is not None:
+                plane = HalfSpace(normal, offset) if front else HalfSpace(-normal, -offset)
+                triangles = elements[receivers if len(receivers) else members[number]]
+                yield _Target(plane, mine, receivers, triangles, mirror)
 
 
 def _facing(part, normal, axes) -> np.ndarray:
@@ -350,8 +260,7 @@ def _before(near: Screens, beam: DiscBeam, plane: HalfSpace, vertices) -> Screen
         return None
     screens = beam.screens.take(~(outside | (inside & beam.screens.window)))
     height = near.vertices @ plane.normal - plane.offset
-    above = np.flatnonzero((height > near.tolerance).any(axis=1))
-    above = above[~near.take(above).relation(hull)[0][:, 0]]
+    above = np.flatnonzero((height > near.tolerance).any(axis=1) & ~near.relation(hull)[0][:, 0])
     if not len(above):
         return screens
     cut = polygons.clip(near.vertices[above], plane.normal, plane.offset)
@@ -471,63 +380,6 @@ def _sort(beam: DiscBeam, screens: Screens, triangles):
     return factor, cut, narrowest, widest
 
 
-@dataclass(frozen=True, eq=False)
-class _Pieces:
-    """Convex pieces of what is still lit: of the disc, or of faces.
-
-    Attributes
-    ----------
-    shapes : (m, v, 3) float, padded
-    rows : (m,) int
-        Sample that each belongs to.
-    factor : (m,) float
-    """
-
-    shapes: np.ndarray
-    rows: np.ndarray
-    factor: np.ndarray
-
-    def take(self, index) -> _Pieces:
-        return _Pieces(self.shapes[index], self.rows[index], self.factor[index])
-
-    @classmethod
-    def joined(cls, parts: list[_Pieces]) -> _Pieces:
-        parts = [p for p in parts if len(p.rows)] or parts[:1]
-        width = max(p.shapes.shape[1] for p in parts)
-        return cls(
-            np.concatenate([_padded(p.shapes, width) for p in parts]),
-            np.concatenate([p.rows for p in parts]),
-            np.concatenate([p.factor for p in parts]),
-        )
-
-    def parted(self, normals, offsets) -> tuple[_Pieces, _Pieces]:
-        """What of the pieces is inside half-spaces, and what outside: ``normals`` (m, 3), ``offsets`` (m,)."""
-        height = np.einsum("mvc,mc->vm", self.shapes, normals) - offsets
-        least, most = height.min(axis=0), height.max(axis=0)
-        speck = _SPECK * np.maximum(most, -least)
-        inside, outside = least >= -speck, most <= speck
-        outside &= ~inside
-        split = ~(inside | outside)
-        if not split.any():
-            return self.take(inside), self.take(outside)
-        both, normals, offsets = self.take(split), normals[split], offsets[split]
-        inner = replace(both, shapes=polygons.clip(both.shapes, normals, offsets))
-        outer = replace(both, shapes=polygons.clip(both.shapes, -normals, -offsets))
-        return _Pieces.joined([self.take(inside), inner]), _Pieces.joined([self.take(outside), outer])
-
-    def behind(self, screens: Screens, k: int, normals, offsets) -> _Pieces:
-        """The pieces past screen ``k``, its edges as half-spaces for each sample, ``(n, w, 3)`` and ``(n, w)``."""
-        inside, left = self, []
-        for edge in np.flatnonzero(screens.true[k]):
-            inside, outside = inside.parted(normals[inside.rows, edge], offsets[inside.rows, edge])
-            left.append(outside)
-        if screens.window[k]:
-            return inside
-        if screens.transmittance[k] > 0:
-            left.append(replace(inside, factor=inside.factor * screens.transmittance[k]))
-        return _Pieces.joined(left)
-
-
 def _clip_disc(beam, screens, disc_part, rule, cosines, triangles, cut) -> np.ndarray:
     """(n,) float: means over triangles by points on them, each with the disc clipped exactly."""
     n, q = len(triangles), len(_POINT_WEIGHTS)
@@ -542,13 +394,13 @@ def _seen_disc(screens: Screens, disc_part, points, cut) -> np.ndarray:
     ``disc_part`` is (1 or n, v, 3).
     """
     n = len(points)
-    pieces = _Pieces(np.broadcast_to(disc_part, (n, *disc_part.shape[1:])), np.arange(n), np.ones(n))
+    pieces = Pieces(np.broadcast_to(disc_part, (n, *disc_part.shape[1:])), np.arange(n), np.ones(n))
     for k in np.flatnonzero(cut.any(axis=1)):
         mine = cut[k][pieces.rows]
         if mine.any():
             lines = screens.lines_at(k, points)
             after = pieces.take(mine).behind(screens, k, lines, np.zeros(lines.shape[:2]))
-            pieces = _Pieces.joined([pieces.take(~mine), after])
+            pieces = Pieces.joined([pieces.take(~mine), after])
     seen = np.zeros((n, 3))
     np.add.at(seen, pieces.rows, pieces.factor[:, None] * disc.moments(pieces.shapes))
     return seen
@@ -562,7 +414,7 @@ def _clip_faces(beam, screens, disc_part, rule, cosines, triangles, cut) -> np.n
     places, weights = places[up], (weights * cosine)[up]
     n, q = len(triangles), len(places)
     size = polygons.areas(triangles)
-    pieces = _Pieces(np.repeat(triangles, q, axis=0), np.arange(n * q), np.tile(weights, n))
+    pieces = Pieces(np.repeat(triangles, q, axis=0), np.arange(n * q), np.tile(weights, n))
     if beam.ahead is not None:
         pieces = pieces.take(np.tile(places @ (beam.axes @ beam.ahead.normal) < 0, n))
         count = len(pieces.rows)
@@ -573,7 +425,7 @@ def _clip_faces(beam, screens, disc_part, rule, cosines, triangles, cut) -> np.n
         if mine.any():
             normals, offsets = screens.planes_for(k, places)
             after = pieces.take(mine).behind(screens, k, np.tile(normals, (n, 1, 1)), np.tile(offsets, (n, 1)))
-            pieces = _Pieces.joined([pieces.take(~mine), after])
+            pieces = Pieces.joined([pieces.take(~mine), after])
     lit = np.bincount(pieces.rows // q, weights=pieces.factor * polygons.areas(pieces.shapes), minlength=n)
     return lit / size
 
