@@ -71,6 +71,38 @@ def test_sun_on_the_horizon_gives_nothing_and_just_above_it_does():
     assert Sun(altitude=90, azimuth=0, normal_illuminance=8e4).horizontal_illuminance == 8e4
 
 
+@pytest.mark.parametrize("altitude", [90.0, 60.0, 0.27, 0.1, 0.0, -0.2, -0.2664])
+def test_a_disc_that_is_partly_up_gives_the_part_above(altitude):
+    """Against a grid over the disc; wholly up it gives what the collimated Sun gives."""
+    step = (np.arange(1000) + 0.5) / 500 - 1
+    u, v = np.meshgrid(step, step)
+    radius = math.tan(math.radians(Sun.ANGULAR_DIAMETER / 2))
+    up = math.radians(altitude)
+    height = np.maximum(math.sin(up) + radius * v * math.cos(up), 0)[u**2 + v**2 < 1]
+    disc = Sun(altitude=altitude, azimuth=77.0, normal_illuminance=1.0, disc=True)
+    assert disc.is_up
+    assert disc.horizontal_illuminance == pytest.approx(height.mean(), rel=3e-3, abs=1e-8)
+    if altitude > 0.2665:
+        collimated = Sun(altitude=altitude, azimuth=77.0, normal_illuminance=1.0)
+        assert disc.horizontal_illuminance == collimated.horizontal_illuminance and disc.disc_horizon == -1.0
+
+
+@pytest.mark.parametrize("altitude", [-0.2665, -0.3, -90.0])
+def test_a_disc_below_the_horizon_gives_nothing(altitude):
+    sun = Sun(altitude=altitude, azimuth=77.0, normal_illuminance=1.0, disc=True)
+    assert not sun.is_up and sun.horizontal_illuminance == 0.0 and sun.disc_horizon == 1.0
+
+
+@pytest.mark.parametrize("direction", [(0, 0, 1), (1e-9, 0, 1), (0.3, -0.4, 0.5), (0, 1, 0), (1, 1, -3e-3)])
+def test_axes_of_the_disc(direction):
+    sun = Sun(direction=direction, normal_illuminance=1.0)
+    radius = math.tan(math.radians(0.533 / 2))
+    axes = sun.disc_axes
+    np.testing.assert_allclose(axes @ axes.T, np.diag([1, radius**2, radius**2]), atol=1e-15)
+    np.testing.assert_allclose(axes[0], sun.direction, atol=1e-15)
+    assert axes[1, 2] == 0 and axes[2, 2] >= 0
+
+
 @pytest.mark.parametrize(
     ("given_", "message"),
     [

@@ -363,3 +363,78 @@ def test_a_box_keeps_the_sun_out():
     result = prepare_coarse(box(luz.Material(diffuse_reflectance=0.5))).solve(sun(0.3, 0.2, 1))
     np.testing.assert_allclose(result.illuminance, 0, atol=1e-6)
     np.testing.assert_allclose(result.at([[0.5, 0.5, 0.5]], [[0, 0, 1]]), 0, atol=1e-6)
+
+
+def area_inside(triangle, low, high):
+    """Area of a plane triangle inside a rectangle, by clipping its loop at one side after the other."""
+    loop = [np.asarray(corner, float) for corner in triangle]
+    for axis, sign, level in ((0, 1, low[0]), (0, -1, -high[0]), (1, 1, low[1]), (1, -1, -high[1])):
+        kept = []
+        for a, b in zip(loop, [*loop[1:], *loop[:1]], strict=True):
+            here, there = sign * a[axis] - level, sign * b[axis] - level
+            if here >= 0:
+                kept.append(a)
+            if (here >= 0) != (there >= 0):
+                kept.append(a + here / (here - there) * (b - a))
+        loop = kept
+    x, y = np.array(loop).reshape(-1, 2).T
+    return 0.5 * abs(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(35, 60), st.floats(-40, 40), st.sampled_from([1, 2]), st.floats(0.01, 0.5))
+def test_faces_have_the_lit_share_of_a_patch_by_one_mirror_and_two(altitude, azimuth, mirrors, half_width):
+    """A mirror at the ground throws its own outline, moved along; its corners lie anywhere inside coarse faces."""
+    up, around = math.radians(altitude), math.radians(azimuth)
+    step = -np.array([math.sin(around), math.cos(around)]) / math.tan(up)
+    low, high = np.array([-half_width, -0.3]), np.array([half_width, 0.4])
+
+    def plate(way, level):
+        return rectangle(*((low[k] + way * step[k] - 0.7, high[k] + way * step[k] + 0.9) for k in (0, 1)), level)
+
+    grey = luz.Material(diffuse_reflectance=0.5)
+    scene = luz.Scene()
+    scene.add("first", rectangle((low[0], high[0]), (low[1], high[1]), 0), MIRROR)
+    scene.add("above", plate(3, 3)[::-1], MIRROR if mirrors == 2 else grey)
+    scene.add("below", plate(7, -1), grey)
+    result = prepare_coarse(scene, elements=20, patches=5, bands=4, max_area=0.9).solve(
+        sun(math.sin(around), math.cos(around), math.tan(up)), cycles=0
+    )
+    faces = result.faces_of("below" if mirrors == 2 else "above")
+    moved = (7 if mirrors == 2 else 3) * step
+    share = [
+        area_inside(corners[:, :2], low + moved, high + moved) / area
+        for corners, area in zip(result.vertices[faces], result.areas[faces], strict=True)
+    ]
+    assert any(0 < s < 1 for s in share)
+    lux = 0.9**mirrors * DNI * math.sin(up)
+    np.testing.assert_allclose(result.components["sun_specular"][faces] / lux, share, atol=1e-9)
+
+
+@pytest.mark.parametrize("altitude", [10, 1, 0.1, 0.01])
+def test_a_mirror_at_grazing_sun_keeps_its_lumens(altitude):
+    """The mirrored strip on the wall is as narrow as the Sun is low; all of it arrives."""
+    scene = luz.Scene()
+    scene.add("mirror", rectangle((-1, 1), (-1, 1), 0), MIRROR)
+    scene.add("wall", [[2, 1, -1], [2, 1, 3], [-2, 1, 3], [-2, 1, -1]], BLACK)
+    up = math.radians(altitude)
+    result = prepare_coarse(scene, bands=4).solve(sun(0, -math.cos(up), math.sin(up)))
+    mirrored = result.components["sun_specular"] @ result.areas
+    assert flux(result, "mirror") == pytest.approx(4 * DNI * math.sin(up), rel=1e-9)
+    assert mirrored == pytest.approx(0.9 * 4 * DNI * math.sin(up), rel=1e-6)
+
+
+@pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
+def test_the_lumens_of_slits(width):
+    """A slit between two plates, slanted across the faces beneath it."""
+    turn = np.array([[math.cos(0.4), math.sin(0.4), 0], [-math.sin(0.4), math.cos(0.4), 0], [0, 0, 1]])
+    scene = scene_of(
+        {
+            "floor": rectangle((-1, 1), (-1, 1), 0),
+            "left": rectangle((-9, -width / 2), (-9, 9), 1) @ turn,
+            "right": rectangle((width / 2, 9), (-9, 9), 1) @ turn,
+        }
+    )
+    result = prepare_coarse(scene, bands=4).solve(sun(0, 0, 1))
+    length = 2 / math.cos(0.4)
+    assert flux(result, "floor") / DNI == pytest.approx(width * length, rel=1e-4)
