@@ -246,6 +246,38 @@ def test_interreflected_light_follows_the_disc():
     assert got @ result.areas > 1000 and abs(transfer.solve(light).balance.defect) < 0.02
 
 
+def test_light_that_only_the_rim_of_the_sun_gives_is_sent_on():
+    """A pad in the core of the collimated shadow, but lit by the disc's rim: it lights the wall beside it."""
+    pads = {
+        "pad": rectangle((-0.04, 0.04), (-0.04, 0.04), 0),
+        "wall": [[0.06, 0.04, 0], [0.06, -0.04, 0], [0.06, -0.04, 0.05], [0.06, 0.04, 0.05]],
+        "other": rectangle((-3, -2), (-1, 1), 0),
+    }
+    plate = {"plate": rectangle((-0.05, 0.05), (-0.05, 0.05), 50)}
+    found = []
+    for polygons, light in ((pads, sun(0, 0, 1, disc=False)), (pads | plate, sun(0, 0, 1))):
+        result = prepare_coarse(scene_of(polygons, GREY), bands=24).solve(light, cycles=1)
+        wall = result.faces_of("wall")
+        assert result.sunlight.patches
+        found.append(result.components["interreflected"][wall] @ result.areas[wall])
+    assert found[0] > 1
+    assert found[1] / found[0] == pytest.approx(1 - 0.01 / (math.pi * (50 * RADIUS) ** 2), rel=0.05)
+
+
+@pytest.mark.parametrize("altitude", [20, 50, 80])
+def test_what_is_beneath_the_floor_casts_no_shadow(altitude):
+    """A plate that stands through the floor takes away what its upper part is struck by."""
+    plate = [[-0.5, 0, -3], [0.5, 0, -3], [0.5, 0, 0.7], [-0.5, 0, 0.7]]
+    scene = scene_of({"floor": rectangle((-9, 9), (-9, 9), 0), "plate": plate}, BLACK)
+    result = prepare_coarse(scene, bands=4).solve(at_altitude(altitude))
+    up = math.radians(altitude)
+    lost = 18 * 18 * math.sin(up) - flux(result, "floor") / DNI
+    assert lost == pytest.approx(0.7 * math.cos(up), rel=1e-3)
+    points = [[0.3, 0.2, 0], [0.3, -0.2, 0], [0.3, -2, 0]]
+    got = result.at(points, [[0, 0, 1]] * 3)
+    np.testing.assert_allclose(got / (DNI * math.sin(up)), [0.2 > 0.7 / math.tan(up), 1, 1], atol=1e-4)
+
+
 def test_lumens_are_those_of_the_collimated_sun():
     transfer = prepare_coarse(room(), elements=600, bands=4, max_area=0.02)
     parallel = dataclasses.replace(SLANTED, sun=dataclasses.replace(SLANTED.sun, disc=False))
