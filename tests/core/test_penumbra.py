@@ -267,15 +267,28 @@ def test_light_that_only_the_rim_of_the_sun_gives_is_sent_on():
 @pytest.mark.parametrize("altitude", [20, 50, 80])
 def test_what_is_beneath_the_floor_casts_no_shadow(altitude):
     """A plate that stands through the floor takes away what its upper part is struck by."""
-    plate = [[-0.5, 0, -3], [0.5, 0, -3], [0.5, 0, 0.7], [-0.5, 0, 0.7]]
+    plate = [[-0.5, 0.13, -3], [0.5, 0.13, -3], [0.5, 0.13, 0.7], [-0.5, 0.13, 0.7]]
     scene = scene_of({"floor": rectangle((-9, 9), (-9, 9), 0), "plate": plate}, BLACK)
     result = prepare_coarse(scene, bands=4).solve(at_altitude(altitude))
     up = math.radians(altitude)
     lost = 18 * 18 * math.sin(up) - flux(result, "floor") / DNI
     assert lost == pytest.approx(0.7 * math.cos(up), rel=1e-3)
-    points = [[0.3, 0.2, 0], [0.3, -0.2, 0], [0.3, -2, 0]]
+    points = [[0.3, 0.33, 0], [0.3, -0.07, 0], [0.3, -2, 0]]
     got = result.at(points, [[0, 0, 1]] * 3)
     np.testing.assert_allclose(got / (DNI * math.sin(up)), [0.2 > 0.7 / math.tan(up), 1, 1], atol=1e-4)
+
+
+def test_what_is_behind_a_mirror_is_not_in_the_way():
+    """Behind the mirror's plane, where its image of the Sun stands, a plate hides nothing."""
+    scene = luz.Scene()
+    scene.add("mirror", rectangle((-1, 1), (0, 1), 0), MIRROR)
+    scene.add("plate", [[-3, -0.5, -3], [3, -0.5, -3], [3, -0.5, 0.1], [-3, -0.5, 0.1]], BLACK)
+    scene.add("wall", [[3, 1.5, 0], [3, 1.5, 3], [-3, 1.5, 3], [-3, 1.5, 0]], BLACK)
+    result = prepare_coarse(scene, bands=4).solve(at_altitude(45))
+    cosine = math.sqrt(0.5)
+    assert result.components["sun_specular"] @ result.areas == pytest.approx(0.9 * 2 * DNI * cosine, rel=1e-4)
+    both = result.at([[0, 1.5, 1.0]], [[0, -1, 0]])
+    np.testing.assert_allclose(both / DNI, 1.9 * cosine, rtol=1e-4)
 
 
 def test_lumens_are_those_of_the_collimated_sun():
