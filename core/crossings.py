@@ -18,20 +18,23 @@ _ALIGNED = 0.99
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """Obstacles that beams may be crossed by, one row each (n); and the edges that cross (m).
+    """Obstacles that beams may be crossed by, ``n``; those that edges do cross, ``l``; and the edges that cross, ``m``.
 
     Attributes
     ----------
     row, beam, obstacle : (n,) int
-    sine : (n, w) float32
-    outside, grazing : (n,) bool
-        The beam passes beside the obstacle; but not beside the circle around the beam.
-    edges : (n,) int
-        How many edges cross the beam; where none does, it meets the obstacle wholly or not at all.
+    sine : (w, n) float32
+        Of the angle from each edge's plane to the beam's centre, positive inside; inf where there is no edge.
+    whole, grazing : (·,) int
+        Candidates that no edge parts from the beam; and those beside it, but not beside the circle around it.
+    crossed : (l,) int
+        Candidates that edges cross.
+    edges : (l,) int
+        How many of them.
     pair : (m,) int
-        Which candidate an edge belongs to.
+        Place in ``crossed`` that an edge belongs to.
     normal : (m, 3) float32
-    across : (m, 2) float32
+    across : (2, m) float32
         The beam's sides, projected on the edge's normal.
     place : (m,) float32
     """
@@ -40,8 +43,9 @@ class Candidates:
     beam: np.ndarray
     obstacle: np.ndarray
     sine: np.ndarray
-    outside: np.ndarray
+    whole: np.ndarray
     grazing: np.ndarray
+    crossed: np.ndarray
     edges: np.ndarray
     pair: np.ndarray
     normal: np.ndarray
@@ -52,35 +56,50 @@ class Candidates:
     def of(cls, row, beam, obstacle, sine, planes, heights, beams: Beams) -> Candidates:
         """Find the edges that really cross the beams: by their own shape, not the circle around them."""
         reach = beams.reach.astype(np.float32)[beam]
-        pair, edge = np.nonzero(np.abs(sine) < reach[:, None])
+        edge, pair = np.nonzero(np.abs(sine) < reach)
+        mine = beam[pair]
         normal = planes[row[pair], obstacle[pair], edge]
-        across = np.matmul(beams.spans[beam[pair]], normal[:, :, None])[:, :, 0]
-        place = sine[pair, edge] - beams.lags[beam[pair]] * across[:, 0]
+        across = np.einsum("mac,mc->am", beams.spans[mine], normal)
+        place = sine[edge, pair] - beams.lags[mine] * across[0]
         np.abs(across, out=across)
-        support = np.where(beams.odd[beam[pair]], reach[pair], 0.5 * (across[:, 0] + across[:, 1]))
-        beyond = (sine <= -reach[:, None]).any(axis=1) | (heights[row, obstacle] == 0)
+        support = 0.5 * (across[0] + across[1])
+        round_ = np.flatnonzero(beams.odd[mine])
+        support[round_] = reach[pair[round_]]
+        beyond = (sine <= -reach).any(axis=0) | (heights[row, obstacle] == 0)
         outside = beyond.copy()
         outside[pair[place <= -support]] = True
-        grazing = outside & ~beyond
-        crossing = np.abs(place) < support
-        pair = pair[crossing]
-        edges = np.bincount(pair, minlength=len(row))
-        normal, across, place = normal[crossing], across[crossing], place[crossing]
-        return cls(row, beam, obstacle, sine, outside, grazing, edges, pair, normal, across, place)
+        crossing = np.flatnonzero((np.abs(place) < support) & ~outside[pair])
+        edges = np.bincount(pair[crossing], minlength=len(row))
+        crossed = np.flatnonzero(edges)
+        number = np.cumsum(edges > 0) - 1
+        return cls(
+            row,
+            beam,
+            obstacle,
+            sine,
+            np.flatnonzero((edges == 0) & ~outside),
+            np.flatnonzero(outside & ~beyond),
+            crossed,
+            edges[crossed],
+            number[pair[crossing]],
+            normal[crossing],
+            across[:, crossing],
+            place[crossing],
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Crossed:
-    """Obstacles whose edges cross beams, sorted by beam and then by distance; all arrays of length n.
+    """Obstacles whose edges cross beams, sorted by beam; all arrays of length n.
 
-    ``share`` and ``offset`` are those by the crossing edge alone, where there is just one; ``edge_sum`` is the sum of
-    the normals of the crossing edges' planes.
+    ``number`` is their place among the candidates. ``share`` and ``offset`` are those by the crossing edge alone, where
+    there is just one; ``edge_sum`` is the sum of the normals of the crossing edges' planes.
     """
 
     row: np.ndarray
     beam: np.ndarray
     obstacle: np.ndarray
-    sine: np.ndarray
+    number: np.ndarray
     share: np.ndarray
     offset: np.ndarray
     distance: np.ndarray
@@ -102,7 +121,7 @@ def settle_whole(
     seen, nearest, start, candidates: Candidates, eye: Eye, beams: Beams, obstacles: Obstacles
 ) -> np.ndarray:
     """Enter obstacles that no edge parts from a beam into ``seen`` and ``nearest``, in place; gives their numbers."""
-    whole = np.flatnonzero((candidates.edges == 0) & ~candidates.outside)
+    whole = candidates.whole
     row, beam, obstacle = candidates.row[whole], candidates.beam[whole], candidates.obstacle[whole]
     towards = eye.towards(row, beam, beams)
     distance = _distance_along(eye.heights, obstacles, row, obstacle, towards).astype(np.float32)
@@ -116,34 +135,39 @@ def settle_whole(
 
 def find_crossings(seen, candidates: Candidates, heights, beams: Beams, obstacles: Obstacles) -> Crossed:
     """Candidates that edges really cross, with the share that one edge alone leaves them."""
-    row, beam, obstacle, edges = candidates.row, candidates.beam, candidates.obstacle, candidates.edges
+    mine, edges = candidates.crossed, candidates.edges
+    row, beam, obstacle = candidates.row[mine], candidates.beam[mine], candidates.obstacle[mine]
     pair, normal = candidates.pair, candidates.normal
-    offset = np.zeros((len(row), 3), np.float32)
-    covered, moment = coverage(candidates.place.astype(float), *candidates.across.T.astype(float))
+    covered, moment = coverage(candidates.place.astype(float), *candidates.across.astype(float))
     # exact for one edge, and near enough where edges meet at a corner
-    share = np.exp(np.bincount(pair, weights=np.log(np.maximum(covered, 1e-30)), minlength=len(row)))
-    offset[pair] = (moment / np.maximum(covered, 1e-12))[:, None] * normal
+    share, edge_sum = np.ones(len(mine)), np.zeros((len(mine), 3), np.float32)
+    lone = edges[pair] == 1
+    several = np.flatnonzero(~lone)
+    share[pair[lone]] = covered[lone]
+    edge_sum[pair[lone]] = normal[lone]
+    np.multiply.at(share, pair[several], covered[several])
+    np.add.at(edge_sum, pair[several], normal[several])
+    offset = np.zeros((len(mine), 3), np.float32)
+    offset[pair] = (moment / np.maximum(covered, 1e-12)).astype(np.float32)[:, None] * normal
     # what is nearer shows at the part's own centre: an edge may stand on the obstacle behind it
     towards = beams.directions.astype(np.float32)[beam] + offset
     distance = _distance_along(heights, obstacles, row, obstacle, towards)
-    far = np.full(len(row), np.inf)
-    known = np.flatnonzero(seen[row, beam] >= 0)
-    far[known] = _distance_along(heights, obstacles, row[known], seen[row[known], beam[known]], towards[known])
-    behind = np.isfinite(distance) & (distance >= np.where(edges < 2, far, _WELL_BEHIND * far))
-    edge_sum = np.zeros((len(row), 3), np.float32)
-    lone = edges[pair] == 1
-    edge_sum[pair[lone]] = normal[lone]
-    np.add.at(edge_sum, pair[~lone], normal[~lone])
-    keep = np.flatnonzero(~candidates.outside & (edges > 0) & ~behind)
+    behind = seen[row, beam]
+    known = np.flatnonzero(behind >= 0)
+    far = _distance_along(heights, obstacles, row[known], behind[known], towards[known])
+    far *= np.where(edges[known] < 2, 1.0, _WELL_BEHIND)
+    shows = np.ones(len(mine), bool)
+    shows[known] = ~(np.isfinite(distance[known]) & (distance[known] >= far))
+    keep = np.flatnonzero(shows)
+    key = (row[keep] * len(beams.directions) + beam[keep]).astype(np.int32)
+    keep = keep[np.argsort(key, kind="stable")]
     key = row[keep] * len(beams.directions) + beam[keep]
-    order = np.lexsort((distance[keep], key))
-    group = np.cumsum(np.diff(key[order], prepend=key[order[:1]]) > 0)
-    keep = keep[order]
+    group = np.cumsum(np.diff(key, prepend=key[:1]) > 0)
     return Crossed(
         row[keep],
         beam[keep],
         obstacle[keep],
-        candidates.sine[keep],
+        mine[keep],
         share[keep],
         offset[keep],
         distance[keep],
@@ -168,6 +192,8 @@ def subtract_aligned(crossed: Crossed) -> np.ndarray:
     size = np.diff(np.append(starts, len(crossed.group)))
     front = np.minimum(starts, len(crossed.row) - 2) if len(crossed.row) > 1 else starts
     back = front + (len(crossed.row) > 1)
+    swap = crossed.distance[front] > crossed.distance[back]
+    front, back = np.where(swap, back, front), np.where(swap, front, back)
     pair = (size == 2) & (crossed.edges[front] == 1) & (crossed.edges[back] == 1)
     alike = np.einsum("gc,gc->g", crossed.edge_sum[front], crossed.edge_sum[back])
     nested = np.flatnonzero(pair & (alike > _ALIGNED))

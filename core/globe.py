@@ -150,6 +150,11 @@ class Globe:
         up = 0.5 * (np.sin(t1) ** 2 - np.sin(t0) ** 2) * 2 * half
         return np.stack([level * np.sin(self.azimuth), level * np.cos(self.azimuth), up], axis=1)
 
+    def polar_rank(self, parcels) -> np.ndarray:
+        """(m,) int: how many bands lie between each parcel's and the nearer pole."""
+        band = self.band_of[parcels]
+        return np.minimum(band, self.bands - 1 - band)
+
     def subdirections(self, parcels, splits: int) -> np.ndarray:
         """Centres of ``splits`` × ``splits`` parts of equal solid angle of each parcel.
 
@@ -299,8 +304,7 @@ class Globe:
             sampled = weights[cut].sum()
             if sampled > 0:
                 weights[cut] *= (1.0 - weights[free].sum()) / sampled
-        band = self.band_of[parcels]
-        odd = np.minimum(band, self.bands - 1 - band) < POLAR_BANDS
+        odd = self.polar_rank(parcels) < POLAR_BANDS
         odd[cut] = True
         keep = weights > 0
         chord = np.linalg.norm(self.corners[parcels] - directions[:, None], axis=2).max(axis=1)

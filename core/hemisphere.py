@@ -18,8 +18,8 @@ POLAR_BANDS = 2
 
 _BENT = 0.1
 
-_POLAR_ARC = 8
-"""Sides that stand for the outer arc of a parcel next to a pole."""
+_ARC = 8
+"""Sides that stand for an arc where a chord will not do."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,43 +59,48 @@ class Hemisphere:
         return np.stack([self.directions, across, polygons.cross(self.directions, across)], axis=1)
 
     @cached_property
-    def shapes(self) -> tuple[np.ndarray, np.ndarray]:
+    def shapes(self) -> Shapes:
         """Outlines of what is seen of the parcels, on the planes that touch the sphere at `directions`.
 
-        Along the vectors of `frames`. The arcs between bands are chords, shifted to leave the areas right; next to the
-        poles there are more of them.
-
-        Returns
-        -------
-        corners : (k, v, 2) float
-            Counter-clockwise, padded.
-        counts : (k,) int
-            Corners before the padding.
+        The arcs between bands are chords, shifted to leave the areas right; next to the poles there are more of them.
         """
-        band = self.globe.band_of[self.parcels]
-        southern = band >= self.globe.bands // 2
-        inner, outer = self.globe.polar_edges[band + southern], self.globe.polar_edges[band + ~southern]
-        turn = self.globe.azimuth[self.parcels][:, None] + np.multiply.outer(
-            0.5 * self.globe.azimuth_width[self.parcels], np.linspace(-1, 1, _POLAR_ARC + 1)
-        )
-        every = np.arange(len(band))
+        inner, outer, turn = self._sides
+        every = np.arange(len(turn))
         near = self._chord(every, inner, turn)[:, ::-1]
-        corners = self._cut(every, np.concatenate([self._chord(every, outer, turn), near], axis=1))
-        counts = np.full(len(band), corners.shape[1])
-        polar = np.flatnonzero(np.minimum(band, self.globe.bands - 1 - band) < POLAR_BANDS)
+        corners, counts = self._cut(every, np.concatenate([self._chord(every, outer, turn), near], axis=1))
+        polar = np.flatnonzero(self.globe.polar_rank(self.parcels) < POLAR_BANDS)
         if len(polar):
             arc = self._flat(polar, outer[polar, None], turn[polar])
-            many = self._cut(polar, np.concatenate([arc, near[polar]], axis=1))
-            counts[polar] = many.shape[1]
+            many, counts[polar] = self._cut(polar, np.concatenate([arc, near[polar]], axis=1))
             corners = _widened(corners, many.shape[1])
             corners[polar] = many
-        return corners, counts
+        return Shapes.of(corners, counts)
 
-    def _cut(self, index, corners) -> np.ndarray:
-        """Outlines ``(n, v, 2)`` on some of the tangent planes, turned counter-clockwise, and of them what is above."""
+    @cached_property
+    def fine_shapes(self) -> tuple[Shapes, Shapes]:
+        """The same within arcs: outlines as far as the inner arc's chord; what lies between the two, to take off."""
+        inner, outer, turn = self._sides
+        every = np.arange(len(turn))
+        arcs = [self._flat(every, angle[:, None], turn) for angle in (outer, inner)]
+        around = np.concatenate([arcs[0], arcs[1][:, [-1, 0]]], axis=1)
+        return Shapes.of(*self._cut(every, around)), Shapes.of(*self._cut(every, arcs[1]))
+
+    @cached_property
+    def _sides(self):
+        """(k,), (k,) and (k, a) float: polar angles next to the pole and away from it, azimuths across."""
+        band = self.globe.band_of[self.parcels]
+        southern = band >= self.globe.bands // 2
+        turn = self.globe.azimuth[self.parcels][:, None] + np.multiply.outer(
+            0.5 * self.globe.azimuth_width[self.parcels], np.linspace(-1, 1, _ARC + 1)
+        )
+        return self.globe.polar_edges[band + southern], self.globe.polar_edges[band + ~southern], turn
+
+    def _cut(self, index, corners) -> tuple[np.ndarray, np.ndarray]:
+        """Outlines ``(n, v, 2)`` on some of the tangent planes, turned counter-clockwise, of them what is above."""
         spatial = np.concatenate([corners, np.zeros((*corners.shape[:2], 1))], axis=2)
         clockwise = polygons.newell_normal(spatial)[:, 2] < 0
         spatial[clockwise] = spatial[clockwise, ::-1]
+        counts = np.full(len(spatial), spatial.shape[1])
         level = np.concatenate([self.cosines[index, 1:], np.zeros((len(index), 1))], axis=1)
         height = self.cosines[index, 0]
         low = np.flatnonzero((np.einsum("kvc,kc->kv", spatial, level) < -height[:, None]).any(axis=1))
@@ -104,7 +109,8 @@ class Hemisphere:
             width = max(spatial.shape[1], above.shape[1])
             spatial = _widened(spatial, width)
             spatial[low] = _widened(above, width)
-        return spatial[:, :, :2]
+            counts[low] = above.shape[1]
+        return spatial[:, :, :2], counts
 
     def _chord(self, index, angle, turn) -> np.ndarray:
         """(n, 2, 2) float: ends of an arc's chord, shifted so that as much lies beyond it as within."""
@@ -131,14 +137,34 @@ class Hemisphere:
         return self.normal / (self.directions @ self.normal)[:, None] + narrowing[:, None] * self.axes[:, 0]
 
     @cached_property
-    def moments(self) -> np.ndarray:
-        """(k, 3) float: area of each outline and its first moments."""
-        return polygons.convex_moments(self.shapes[0], np.zeros((len(self.directions), 0, 3)))
-
-    @cached_property
     def cosines(self) -> np.ndarray:
         """(k, 3) float: products of the normal with the vectors of `frames`: the cosine and how it changes across."""
         return self.frames @ self.normal
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
+    """Outlines on tangent planes, along the vectors of `Hemisphere.frames`.
+
+    Attributes
+    ----------
+    corners : (2, v, k) float
+        Counter-clockwise, padded.
+    counts : (k,) int
+        Corners before the padding.
+    moments : (k, 3) float
+        Area and first moments.
+    """
+
+    corners: np.ndarray
+    counts: np.ndarray
+    moments: np.ndarray
+
+    @classmethod
+    def of(cls, corners, counts) -> Shapes:
+        """Shapes from corners ``(k, v, 2)``."""
+        corners = np.ascontiguousarray(np.moveaxis(corners, 0, 2).swapaxes(0, 1))
+        return cls(corners, counts, polygons.convex_moments(corners, np.zeros((3, 0, len(counts)))).T)
 
 
 def _widened(shapes, width: int) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .crossings import Crossed
+from .crossings import Candidates, Crossed
 from .projection import Beams, Obstacles
 from .views import Eye, Partial, along
 
@@ -12,12 +12,16 @@ _ON_EDGE = 1e-6
 """Rays this close to an edge [rad] count as inside, so that none slips between two obstacles that share it."""
 
 
-def sample(crossed: Crossed, background, order: int, eye: Eye, beams: Beams, obstacles: Obstacles):
+def sample(
+    crossed: Crossed, candidates: Candidates, background, order: int, eye: Eye, beams: Beams, obstacles: Obstacles
+):
     """Shares of obstacles in beams, and of what none hides.
 
     Parameters
     ----------
     crossed : Crossed
+    candidates : Candidates
+        That they are of.
     background : (g,) int
         What is seen wholly behind the obstacles of each beam, or OPEN.
     order : int
@@ -43,9 +47,9 @@ def sample(crossed: Crossed, background, order: int, eye: Eye, beams: Beams, obs
     weight /= np.maximum(weight.sum(axis=1, keepdims=True), single(1e-30))
     mine = rays[local]
     inside = np.ones(mine.shape[:2], bool)
-    near = np.abs(crossed.sine) < 2 * beams.reach[beam][:, None]
-    for edge in range(near.shape[1]):
-        some = np.flatnonzero(near[:, edge])
+    near = np.abs(candidates.sine[:, crossed.number]) < 2 * beams.reach[beam]
+    for edge, close in enumerate(near):
+        some = np.flatnonzero(close)
         if len(some):
             across = planes[row[some], obstacle[some], edge]
             inside[some] &= np.matmul(mine[some], across[:, :, None])[:, :, 0] >= -_ON_EDGE

@@ -7,11 +7,12 @@ shows: each common part counts, by turns positive and negative, for its farthest
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from . import polygons
+from .hemisphere import Shapes
 from .projection import Beams
 
 _NOTHING = 1e-9
@@ -19,6 +20,12 @@ _NOTHING = 1e-9
 
 _CLOSED = 1e-7
 """An opening smaller than this share of the beam is the rounding of edges that meet."""
+
+_SMALL = 0.1
+"""Openings smaller than this share of a beam are found again within the beam's arcs."""
+
+_FEW_CORNERS = 4
+"""Corners of most parcels."""
 
 _MOST_PAIRS = 24
 """Overlaps of two obstacles in one beam beyond which the parts that are common to more would become too many."""
@@ -61,6 +68,30 @@ class Cuts:
         """(m,) float: how far obstacles' planes are, in lengths of ``towards``; inf where they are not ahead."""
         return _along(self.height[obstacle], self.normal[obstacle], towards)
 
+    def of(self, groups) -> tuple[Cuts, np.ndarray]:
+        """The cuts of some groups, which are numbered anew, and their places among all."""
+        number = np.full(int(self.group.max()) + 1, -1)
+        number[groups] = np.arange(len(groups))
+        mine = np.flatnonzero(number[self.group] >= 0)
+        first = np.cumsum(self.count) - self.count
+        count, edge = self.window_count, self.window_edge
+        if count is not None:
+            begin = np.cumsum(count) - count
+            count, edge = count[groups], edge[_ranges(begin[groups], count[groups])]
+        return (
+            Cuts(
+                self.beam[mine],
+                number[self.group[mine]],
+                self.count[mine],
+                self.edge[_ranges(first[mine], self.count[mine])],
+                self.height[mine],
+                self.normal[mine],
+                count,
+                edge,
+            ),
+            mine,
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Limits:
@@ -78,6 +109,10 @@ class Limits:
     near_normal: np.ndarray
     far_height: np.ndarray
     far_normal: np.ndarray
+
+    def take(self, groups) -> Limits:
+        """Those of some groups."""
+        return Limits(*(getattr(self, f.name)[groups] for f in fields(self)))
 
     def hold(self, group, distance, towards) -> np.ndarray:
         """(n,) bool: whether what lies this many lengths of ``towards`` away is between them."""
@@ -110,7 +145,7 @@ class Shares:
     settled: np.ndarray
 
 
-def settle(cuts: Cuts, beams: Beams, limits: Limits) -> Shares:
+def settle(cuts: Cuts, beams: Beams, limits: Limits, fine: np.ndarray) -> Shares:
     """Find what shows of obstacles in beams.
 
     Parameters
@@ -118,19 +153,35 @@ def settle(cuts: Cuts, beams: Beams, limits: Limits) -> Shares:
     cuts : Cuts
     beams : Beams
     limits : Limits
+    fine : (g,) bool
+        Where openings much smaller than the beam count.
 
     Returns
     -------
     Shares
     """
-    region = _Regions(cuts, beams)
+    half = beams.hemisphere
+    shares = _Tally(beams, cuts, *_visible(cuts, beams, limits, half.shapes)).shares()
+    small = np.flatnonzero(shares.settled & fine & (shares.left > 0) & (shares.left < _SMALL))
+    if len(small):  # an opening that may be smaller than what chords make of arcs
+        mine, some = cuts.of(small)
+        visible, whole, settled = _visible(mine, beams, limits.take(small), half.fine_shapes[0])
+        off, whole_off, _ = _visible(mine, beams, limits.take(small), half.fine_shapes[1])
+        again = _Tally(beams, mine, visible - off, whole - whole_off, settled).shares()
+        shares.share[some], shares.towards[some] = again.share, again.towards
+        shares.left[small], shares.left_towards[small] = again.left, again.left_towards
+        shares.settled[small] = again.settled
+    return shares
+
+
+def _visible(cuts: Cuts, beams: Beams, limits: Limits, shapes: Shapes):
+    """Moments of what shows of each obstacle (n, 3) and of the beams (g, 3); which are settled (g,)."""
+    region = _Regions(cuts, beams, shapes)
     groups = len(limits.far_height)
     every = np.arange(len(cuts.beam))
-    beam = np.empty(groups, np.int64)
-    beam[cuts.group] = cuts.beam
-    whole, cosines = region.whole(beam), beams.hemisphere.cosines[beams.columns[beam]]
+    whole = region.whole(groups)
     alone = region.moments(every[:, None])
-    ahead = region.towards(cuts.beam, alone)
+    ahead = _towards(region.frames[cuts.beam], alone)
     distance = cuts.distance(every, ahead)
     shows = (alone[:, 0] > _NOTHING * whole[cuts.group, 0]) & (distance < np.inf)
     shows &= limits.hold(cuts.group, distance, ahead)
@@ -151,23 +202,48 @@ def settle(cuts: Cuts, beams: Beams, limits: Limits) -> Shares:
             visible[:, k] += sign * np.bincount(farthest, weights=moments[:, k], minlength=len(visible))
         members, moments = region.extended(some, members, last, pairs)
         sign = -sign
+    return visible, whole, settled
 
-    total = np.where(settled, np.einsum("gc,gc->g", whole, cosines), 1.0)
-    share = np.einsum("nc,nc->n", visible, cosines[cuts.group]) / total[cuts.group]
-    share = np.where(settled[cuts.group], np.maximum(share, 0.0), 0.0)
-    covered = np.bincount(cuts.group, weights=share, minlength=groups)
-    left = 1.0 - covered
-    left[left < _CLOSED] = 0.0
-    share /= (covered + left)[cuts.group]
-    rest = whole - np.stack([np.bincount(cuts.group, weights=v, minlength=groups) for v in visible.T], axis=1)
-    return Shares(share, region.towards(cuts.beam, visible), left, region.towards(beam, rest), settled)
+
+@dataclass(frozen=True, eq=False)
+class _Tally:
+    """What shows of obstacles and of beams, by area and first moments."""
+
+    beams: Beams
+    cuts: Cuts
+    visible: np.ndarray
+    whole: np.ndarray
+    settled: np.ndarray
+
+    def shares(self) -> Shares:
+        """Shares of the beams' cosine-weighted solid angle."""
+        group, groups = self.cuts.group, len(self.whole)
+        beam = np.empty(groups, np.int64)
+        beam[group] = self.cuts.beam
+        cosines, frames = self.beams.hemisphere.cosines[self.beams.columns[beam]], self.beams.frames
+        total = np.where(self.settled, np.einsum("gc,gc->g", self.whole, cosines), 1.0)
+        share = np.einsum("nc,nc->n", self.visible, cosines[group]) / total[group]
+        share = np.where(self.settled[group], np.maximum(share, 0.0), 0.0)
+        covered = np.bincount(group, weights=share, minlength=groups)
+        left = 1.0 - covered
+        left[left < _CLOSED] = 0.0
+        share /= (covered + left)[group]
+        rest = self.whole - np.stack([np.bincount(group, weights=v, minlength=groups) for v in self.visible.T], axis=1)
+        towards = _towards(frames[self.cuts.beam], self.visible)
+        return Shares(share, towards, left, _towards(frames[beam], rest), self.settled)
+
+
+def _towards(frames, moments) -> np.ndarray:
+    """(m, 3) float: the middles of regions; of beams where they have no area."""
+    moments = np.where(moments[:, :1] > 1e-300, moments, [1.0, 0.0, 0.0])
+    return np.einsum("mac,ma->mc", frames, moments / moments[:, :1])
 
 
 class _Regions:
     """Parts of beams that are common to some obstacles."""
 
-    def __init__(self, cuts: Cuts, beams: Beams):
-        self.cuts, self.beams = cuts, beams
+    def __init__(self, cuts: Cuts, beams: Beams, shapes: Shapes):
+        self.cuts, self.beams, self.shapes = cuts, beams, shapes
         counts, edges = [cuts.count], [cuts.edge]
         owners = [np.repeat(cuts.beam, cuts.count)]
         if cuts.window_count is not None:  # windows follow the obstacles
@@ -180,21 +256,17 @@ class _Regions:
         self.first = np.cumsum(self.count) - self.count
         self.frames = beams.frames
         lines = np.einsum("lac,lc->la", self.frames[np.concatenate(owners)], np.concatenate(edges))
-        self.lines = np.concatenate([lines, [[1.0, 0.0, 0.0]]])  # the last cuts nothing
+        self.lines = np.concatenate([lines, [[1.0, 0.0, 0.0]]]).T.copy()  # the last cuts nothing
 
-    def whole(self, beam) -> np.ndarray:
+    def whole(self, groups: int) -> np.ndarray:
         """(g, 3) float: area and first moments of each beam, within its window."""
-        moments = self.beams.hemisphere.moments[self.beams.columns[beam]]
-        if self.cuts.window_count is None:
-            return moments
-        some = np.flatnonzero(self.cuts.window_count)
-        moments[some] = self._cut(beam[some], len(self.cuts.beam) + some[:, None])
+        beam = np.empty(groups, np.int64)
+        beam[self.cuts.group] = self.cuts.beam
+        moments = self.shapes.moments[self.beams.columns[beam]]
+        if self.cuts.window_count is not None:
+            some = np.flatnonzero(self.cuts.window_count)
+            moments[some] = self._cut(beam[some], len(self.cuts.beam) + some[:, None])
         return moments
-
-    def towards(self, beam, moments) -> np.ndarray:
-        """(m, 3) float: the regions' middles; the beams' where they have no area."""
-        moments = np.where(moments[:, :1] > 1e-300, moments, [1.0, 0.0, 0.0])
-        return np.einsum("mac,ma->mc", self.frames[beam], moments / moments[:, :1])
 
     def moments(self, members) -> np.ndarray:
         """(m, 3) float: area and first moments of what is common to obstacles ``(m, s)``, on the beams' planes."""
@@ -204,12 +276,12 @@ class _Regions:
         return self._cut(self.cuts.beam[members[:, -1]], members)
 
     def _cut(self, beam, members) -> np.ndarray:
-        corners, counts = self.beams.hemisphere.shapes
+        corners = self.shapes.corners
         out = np.empty((len(members), 3))
         lines = self.count[members].sum(axis=1)
         column = self.beams.columns[beam]
-        many = counts[column] > 5
-        for sides, kind in ((5, ~many), (corners.shape[1], many)):
+        many = self.shapes.counts[column] > _FEW_CORNERS
+        for sides, kind in ((_FEW_CORNERS, ~many), (corners.shape[1], many)):
             mine = np.flatnonzero(kind)
             mine = mine[np.argsort(lines[mine], kind="stable")]
             ends = np.append(np.flatnonzero(np.diff(lines[mine])) + 1, len(mine))
@@ -217,15 +289,15 @@ class _Regions:
             for end in ends:
                 if end - begin >= _BATCH or (end == len(mine) and end > begin):
                     now = mine[begin:end]
-                    shapes = corners[column[now], :sides]
-                    out[now] = polygons.convex_moments(shapes, self.lines[self._lines_of(members[now], lines[now])])
+                    bounds = self.lines[:, self._lines_of(members[now], lines[now]).T]
+                    out[now] = polygons.convex_moments(corners[:, :sides, column[now]], bounds).T
                     begin = end
         return out
 
     def _lines_of(self, members, counts) -> np.ndarray:
         """(m, l) int: lines that bound what obstacles have in common, padded."""
         width = int(counts.max(initial=0))
-        index = np.full((len(members), width), len(self.lines) - 1)
+        index = np.full((len(members), width), self.lines.shape[1] - 1)
         index[np.arange(width) < counts[:, None]] = _ranges(self.first[members].ravel(), self.count[members].ravel())
         return index
 
@@ -260,12 +332,12 @@ class _Regions:
         together = np.concatenate([members[row], other[:, None]], axis=1)
         moments = self.moments(some[together])
         column = self.beams.columns[self.cuts.beam[some[other]]]
-        real = moments[:, 0] > _NOTHING * self.beams.hemisphere.moments[column, 0]
+        real = moments[:, 0] > _NOTHING * self.shapes.moments[column, 0]
         return together[real], moments[real]
 
     def farthest(self, members, moments) -> np.ndarray:
         """(m,) int: of the obstacles ``(m, s)`` that have a region in common, the one seen last."""
-        towards = self.towards(self.cuts.beam[members[:, 0]], moments)
+        towards = _towards(self.frames[self.cuts.beam[members[:, 0]]], moments)
         distance = np.stack([self.cuts.distance(members[:, k], towards) for k in range(members.shape[1])], axis=1)
         return members[np.arange(len(members)), np.argmax(distance, axis=1)]
 

@@ -24,8 +24,14 @@ _MOST = 10
 _FEW_RAYS, _MANY_RAYS = 8, 11
 """Order of the lattice of rays: 21 in a beam that shows no sky, 89 in others."""
 
+_MUCH_SKY = 50
+"""Receivers that see the sky in more whole beams than this don't depend on slits."""
+
 _SLIT = 0.3
-"""Openings between two edges that are this share of a beam or less are found exactly."""
+"""Openings between two edges that are this share of a beam or less count as slits."""
+
+_SLIVER = 0.1
+"""The same of openings beside a single edge."""
 
 _SAME_EDGE = 1e-4
 """Shares of two obstacles at one edge that sum to 1 this closely belong to obstacles that share the edge."""
@@ -50,8 +56,11 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
     joined &= np.add.reduceat(crossed.edges, starts) == 2
     ahead = np.isfinite(np.maximum.reduceat(crossed.distance, starts))
     simple = (joined | lone | aligned) & ahead
-    # a slit is a difference of two shares, and sky beside an edge one of a parcel and a rectangle: small ones want more
-    slit = (size == 2) & (total > 1 - _SLIT)
+    # a slit is a difference of two shares, and sky beside an edge one of a parcel and a rectangle: where little else is
+    # seen of the sky, they are found exactly
+    sky = np.count_nonzero(seen == OPEN, axis=1) - np.bincount(head[0][background == OPEN], minlength=len(seen))
+    little = sky[head[0]] < _MUCH_SKY
+    slit = little & (total > 1 - np.where(size == 2, _SLIT, _SLIVER))
     simple &= joined | (background != OPEN) | ~(beams.bent[head[1]] | slit)
     partial = eye.part_of(*head, len(beams.directions)) >= 0
     simple &= ~partial
@@ -82,7 +91,7 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
         grazing, cuts = _cuts(crossed.take(mine), candidates, eye, beams, obstacles)
         cuts = _with_windows(cuts, eye, *(x[groups] for x in head), beams)
         limits = _limits(eye, head[0][groups], background[groups], obstacles)
-        exact = overlaps.settle(cuts, beams, limits)
+        exact = overlaps.settle(cuts, beams, limits, little[groups])
         share[mine], towards[mine] = exact.share[: len(mine)], exact.towards[: len(mine)]
         left[groups], left_towards[groups] = exact.left, exact.left_towards
         more = grazing, exact.share[len(mine) :], exact.towards[len(mine) :]
@@ -92,7 +101,7 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
         mine, groups = np.flatnonzero(by_rays[group]), np.flatnonzero(by_rays)
         if len(groups):
             share[mine], towards[mine], left[groups], left_towards[groups] = lattice.sample(
-                crossed.take(mine), background[groups], order, eye, beams, obstacles
+                crossed.take(mine), candidates, background[groups], order, eye, beams, obstacles
             )
     seen[head] = SHARED
     remains, lit = left > 1e-9, share > 1e-9
@@ -122,17 +131,15 @@ def _cuts(crossed: Crossed, candidates: Candidates, eye: Eye, beams: Beams, obst
     """Which candidates graze the beams that obstacles cross; and how these, and after them those, cut the beams."""
     starts = crossed.starts
     keys = crossed.row[starts] * len(beams.directions) + crossed.beam[starts]
-    grazing = np.flatnonzero(candidates.grazing)
+    grazing = candidates.grazing
     key = candidates.row[grazing] * len(beams.directions) + candidates.beam[grazing]
     place = np.minimum(np.searchsorted(keys, key), len(keys) - 1)
     mine = keys[place] == key
     grazing, place = grazing[mine], place[mine]
     sizes = np.diff(np.append(starts, len(crossed.row)))
-    row = np.concatenate([crossed.row, candidates.row[grazing]])
-    beam = np.concatenate([crossed.beam, candidates.beam[grazing]])
-    obstacle = np.concatenate([crossed.obstacle, candidates.obstacle[grazing]])
-    sine = np.concatenate([crossed.sine, candidates.sine[grazing]])
-    pair, edge = np.nonzero(np.abs(sine) < beams.reach[beam][:, None])
+    number = np.concatenate([crossed.number, grazing])
+    row, beam, obstacle = candidates.row[number], candidates.beam[number], candidates.obstacle[number]
+    pair, edge = np.nonzero((np.abs(candidates.sine[:, number]) < beams.reach[beam]).T)
     return grazing, overlaps.Cuts(
         beam=beam,
         group=np.concatenate([np.repeat(np.arange(len(starts)), sizes), place]),

@@ -314,18 +314,19 @@ def convex_moments(corners, lines) -> np.ndarray:
 
     Parameters
     ----------
-    corners : (m, v, 2) float, counter-clockwise, padded by repeating the last
-    lines : (m, l, 3) float
+    corners : (2, v, m) float
+        Counter-clockwise, padded by repeating the last. Polygons run along the last axis, so that all steps go through
+        long rows.
+    lines : (3, l, m) float
         ``a + b x + c y`` is positive in the half-plane; (b, c) a unit vector or nought.
 
     Returns
     -------
-    (m, 3) float
+    (3, m) float
         Area, ∫ x dA, ∫ y dA.
     """
-    # polygons run along the last axis, which keeps all steps in long rows
-    x, y = np.ascontiguousarray(np.moveaxis(np.asarray(corners, float), 0, 2).swapaxes(0, 1))
-    a, b, c = np.ascontiguousarray(np.moveaxis(np.asarray(lines, float), 0, 2).swapaxes(0, 1))
+    x, y = corners
+    a, b, c = lines
     across, up = _following(x) - x, _following(y) - y
     height = b[:, None] * x
     height += c[:, None] * y
@@ -361,7 +362,7 @@ def convex_moments(corners, lines) -> np.ndarray:
             twin &= b[:, None] * b + c[:, None] * c > 0
             end[twin.any(axis=0)] = 0.0
     total += _boundary_moments(out_x, out_y, in_x - out_x, in_y - out_y, begin, end)
-    return total.T
+    return total
 
 
 _ON_LINE = 1e-13

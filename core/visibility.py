@@ -94,9 +94,9 @@ def look(
                 if past is not None:
                     ahead = ~((distance[row, column] > 0) & (distance[row, column] < start[row, columns[column]]))
                     near, row, column = near[ahead], row[ahead], column[ahead]
-                sine = np.full((len(near), width), np.inf, np.float32)
+                sine = np.full((width, len(near)), np.inf, np.float32)
                 for edge, values in zip(np.flatnonzero(bounded), sines, strict=True):
-                    sine[:, edge] = values.ravel()[near]
+                    sine[edge] = values.ravel()[near]
                 found.append((row, columns[column], np.full(len(row), o), sine))
                 within[o] = columns
         else:
@@ -109,7 +109,7 @@ def look(
             seen[:, columns] = np.where(whole, np.int32(o), seen[:, columns])
             possible[o] = columns
     if found:
-        candidates = tuple(np.concatenate(x) for x in zip(*found, strict=True))
+        candidates = tuple(np.concatenate(x, axis=-1) for x in zip(*found, strict=True))
         eye = Eye(points, planes, heights, np.asarray(normal, float), past, partial)
         candidates = Candidates.of(*candidates, planes.astype(np.float32), heights, beams)
         for o in settle_whole(seen, nearest, start, candidates, eye, beams, obstacles):

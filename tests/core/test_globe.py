@@ -208,7 +208,7 @@ def test_bands_out_of_range(bands):
 def test_outlines_of_parcels_weigh_what_they_should(normal):
     """Cosine-weighted areas on the tangent planes are the exact weights, but for these planes' distortion."""
     half = Globe(60).hemisphere(normal)
-    weights = (half.moments * half.cosines).sum(axis=1) / math.pi
+    weights = (half.shapes.moments * half.cosines).sum(axis=1) / math.pi
     assert weights.sum() == pytest.approx(1, abs=1e-3)
     np.testing.assert_allclose(weights[~half.odd], half.weights[~half.odd], rtol=7e-3)
     np.testing.assert_allclose(weights, half.weights, atol=2e-2 * half.weights.max())
@@ -216,8 +216,18 @@ def test_outlines_of_parcels_weigh_what_they_should(normal):
 
 def test_outlines_of_parcels_lie_above_the_plane():
     half = Globe(24).hemisphere([0.6, 0, 0.8])
-    corners, counts = half.shapes
-    spatial = half.frames[:, :1] + np.einsum("kva,kac->kvc", corners, half.frames[:, 1:])
-    assert (spatial @ half.normal > -1e-12).all()
-    assert (counts <= corners.shape[1]).all() and counts.min() in (4, 5)
-    assert (half.moments[:, 0] > 0).all(), "counter-clockwise"
+    for shapes in (half.shapes, *half.fine_shapes):
+        spatial = half.frames[:, :1] + np.einsum("avk,kac->kvc", shapes.corners, half.frames[:, 1:])
+        some = shapes.moments[:, 0] > 1e-12  # of slivers there may be nothing left
+        assert (spatial[some] @ half.normal > -1e-12).all()
+        assert (shapes.counts <= shapes.corners.shape[1]).all()
+        assert (shapes.moments[:, 0] > -1e-15).all(), "counter-clockwise"
+    assert half.shapes.counts.min() == 4
+
+
+def test_fine_outlines_are_the_parcels():
+    """Their areas, but for the planes' distortion and what eight sides leave of an arc."""
+    half = Globe(60).hemisphere([0, 0, 1])
+    around, off = half.fine_shapes
+    weights = ((around.moments - off.moments) * half.cosines).sum(axis=1) / math.pi
+    np.testing.assert_allclose(weights, half.weights, rtol=5e-3)

@@ -45,12 +45,13 @@ def louvres(tilt):
 
 WINDOW = ((0.5, 0.9), (2.5, 2.1))
 SCENES = {
-    "hole of 1 m": (room_with("ceiling", (1.6, 0.9), (2.6, 1.9)), 0.1, 0.3),
-    "hole of 30 cm": (room_with("ceiling", (1.98, 1.26), (2.28, 1.56)), 0.15, 0.5),
-    "hole of 10 cm": (room_with("ceiling", (2.08, 1.36), (2.18, 1.46)), 0.3, 1.0),
-    "hole of 3 cm": (room_with("ceiling", (2.115, 1.395), (2.145, 1.425)), 0.5, 2.5),
-    "slot of 1 cm": (room_with("east", (0.9, 0.02), (0.91, 2.4)), 0.3, 1.0),
-    "gap below a door": (room_with("east", (0.5, 0.005), (1.4, 0.015)), 0.3, 1.0),
+    "hole of 1 m": (room_with("ceiling", (1.6, 0.9), (2.6, 1.9)), 0.05, 0.2),
+    "hole of 30 cm": (room_with("ceiling", (1.98, 1.26), (2.28, 1.56)), 0.1, 0.4),
+    "hole of 10 cm": (room_with("ceiling", (2.08, 1.36), (2.18, 1.46)), 0.15, 0.6),
+    "hole of 3 cm": (room_with("ceiling", (2.115, 1.395), (2.145, 1.425)), 0.1, 0.4),
+    "hole of 5 mm": (room_with("ceiling", (2.125, 1.405), (2.13, 1.41)), 0.1, 0.4),
+    "slot of 1 cm": (room_with("east", (0.9, 0.02), (0.91, 2.4)), 0.05, 0.2),
+    "gap below a door": (room_with("east", (0.5, 0.005), (1.4, 0.015)), 0.1, 0.4),
     "window": (room_with("east", *WINDOW), 0.03, 0.1),
     "level louvres": (room_with("east", *WINDOW) + louvres(0), 0.3, 1.0),
     "tilted louvres": (room_with("east", *WINDOW) + louvres(30), 0.3, 1.0),

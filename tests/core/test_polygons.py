@@ -276,4 +276,5 @@ def test_moments_of_what_half_planes_leave_of_polygons(count):
         (twice * (x + following[..., 0])).sum(axis=1) / 6,
         (twice * (y + following[..., 1])).sum(axis=1) / 6,
     ]
-    np.testing.assert_allclose(polygons.convex_moments(corners, lines), np.stack(exact, axis=1), atol=1e-12)
+    got = polygons.convex_moments(corners.transpose(2, 1, 0), lines.transpose(2, 1, 0))
+    np.testing.assert_allclose(got, exact, atol=1e-12)
