@@ -24,6 +24,7 @@ help:
 	@echo "make types      mypy on the solver"
 	@echo "make zip        build and validate the Blender extension (dist/)"
 	@echo "make blend      write examples/light_shelf/light_shelf.blend again"
+	@echo "make benchmark  run time and error of all benchmark scenes (docs/time-and-error.md), some 10 minutes"
 	@echo "make clean      remove .venv, build and dist"
 
 demo: $(VENV)/.demo
@@ -55,6 +56,9 @@ blend:
 	$(LTS)/bin/python -m pip install --quiet --disable-pip-version-check "bpy>=4.2,<4.3"
 	$(LTS)/bin/python examples/light_shelf/make_blend.py
 
+benchmark: $(VENV)/.benchmark
+	$(PY) benchmarks/time_and_error.py --docs
+
 clean:
 	rm -rf $(VENV) build dist *.egg-info
 
@@ -65,7 +69,7 @@ $(PY):
 		"install its venv module (Debian, Ubuntu: apt-get install python3.11-venv) and try again."; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/.demo $(VENV)/.test: $(VENV)/.%: pyproject.toml | $(PY)
+$(VENV)/.demo $(VENV)/.test $(VENV)/.benchmark: $(VENV)/.%: pyproject.toml | $(PY)
 	$(PY) -m pip install --quiet --disable-pip-version-check -e ".[$*]"
 	$(PY) tools/system_libraries.py
 	@touch $@

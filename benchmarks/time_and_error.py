@@ -1,0 +1,393 @@
+"""Run time against error: the solver and the method as published, beside each other.
+
+    python benchmarks/time_and_error.py [--quick] [--scenes seed_room louvres ...] [--output build/time_and_error]
+
+Each scene of ``data/`` is solved by both methods with the same bands and faces, and held against its reference. Every
+setting runs in a process of its own, so that its peak memory is its own; three times where the budget of seconds
+allows, and the median counts. What is measured is kept in ``measurements.json`` after every setting: a run that was
+broken off goes on where it stopped, and begins anew at another commit. ``--docs`` writes page and picture into docs/.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import inspect
+import json
+import os
+import platform
+import resource
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import hit_or_miss
+import numpy as np
+import scenes
+
+import luzespecular as luz
+
+ROOT = Path(__file__).resolve().parents[1]
+METHODS = {"published": "one direction per parcel", "solver": "LuzEspecular"}
+BANDS = (60, 20, 30, 40, 90, 120)  # the usual one first: it is measured even where the budget ends early
+ACCURACIES = (0.03, 0.01)
+REPEATS = 3
+MARK = "<!-- From here on written by benchmarks/time_and_error.py -->"
+
+
+def errors(measure: scenes.Measure, lux) -> dict:
+    """Relative errors of one measure, in percent."""
+    found = 100 * measure.errors(lux)
+    return {
+        "rms": float(np.sqrt(np.mean(found**2))),
+        "largest": float(found[np.argmax(np.abs(found))]),
+        "mean": float(found.mean()),
+        "values": len(found),
+    }
+
+
+def run_published(scene: scenes.BenchmarkScene, setting: dict, threads: int) -> dict:
+    """Seconds and errors of the published method."""
+    start = time.perf_counter()
+    solved = hit_or_miss.HitOrMiss(
+        scene.surfaces,
+        [m.light for m in scene.measures],
+        bands=setting["bands"],
+        max_area=scene.max_area,
+        threads=threads,
+    )
+    seconds = time.perf_counter() - start
+    found = {m.label: errors(m, solved.at(m.points, m.normals, k, m.initial)) for k, m in enumerate(scene.measures)}
+    return {"seconds": seconds, "faces": solved.faces.count, "errors": found}
+
+
+def run_solver(scene: scenes.BenchmarkScene, setting: dict, threads: int) -> dict:
+    """Seconds and errors of the solver."""
+    given = scene.solver_scene()
+    start = time.perf_counter()
+    fineness = {} if "accuracy" in setting else {"max_area": scene.max_area}  # where asked for, the solver chooses
+    transfer = luz.prepare(given, threads=threads, **fineness, **setting)
+    prepared = time.perf_counter()
+    results = [transfer.solve(m.light) for m in scene.measures]
+    end = time.perf_counter()
+    found = {
+        m.label: errors(m, result.at(m.points, m.normals, initial=m.initial))
+        for m, result in zip(scene.measures, results, strict=True)
+    }
+    return {
+        "seconds": end - start,
+        "prepare": prepared - start,
+        "faces": len(results[0].areas),
+        "errors": found,
+    }
+
+
+def run_here(scene_name: str, method: str, setting: dict, threads: int, most_seconds: float, repeats: int) -> dict:
+    """Measure one setting in this process: the median of up to ``repeats`` runs that fit into ``most_seconds``."""
+    scene = scenes.load(scene_name)
+    run = {"published": run_published, "solver": run_solver}[method]
+    start, runs = time.perf_counter(), []
+    while len(runs) < repeats:
+        runs.append(run(scene, setting, threads))
+        if time.perf_counter() - start + runs[-1]["seconds"] > most_seconds:
+            break
+    out = dict(runs[-1])
+    for key in {"seconds", "prepare"} & out.keys():
+        out[key] = statistics.median(r[key] for r in runs)
+    return out | {"runs": len(runs), "peak_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9}
+
+
+def run_apart(task: dict, limit: float) -> dict:
+    """Measure one setting in a process of its own; ``failed`` says why where it did not come to an end."""
+    command = [sys.executable, str(Path(__file__).resolve()), "--one", json.dumps(task)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=limit, check=False)
+    except subprocess.TimeoutExpired:
+        return {"failed": f"not done within {limit:.0f} s"}
+    if done.returncode:
+        last = done.stderr.strip().splitlines()
+        return {"failed": last[-1] if last else f"exit status {done.returncode}"}
+    return json.loads(done.stdout.strip().splitlines()[-1])
+
+
+def settings(method: str, bands) -> list[dict]:
+    """Settings to go through, each a set of options of `luzespecular.prepare`."""
+    found: list[dict] = [{"bands": b} for b in bands]
+    if method == "solver" and "accuracy" in inspect.signature(luz.prepare).parameters:
+        found += [{"accuracy": a} for a in ACCURACIES]
+    return found
+
+
+def measure_scene(name: str, args, kept: dict, keep) -> None:
+    """Measure both methods at all settings that the budget allows, old and new in turn."""
+    scene = scenes.load(name)
+    entry = kept.setdefault(name, {"title": scene.title, "origin": scene.origin, "quads": scene.quads, "measured": []})
+    entry["noise"] = {m.label: 100 * m.noise for m in scene.measures}
+    known = {(row["method"], json.dumps(row["setting"])) for row in entry["measured"]}
+    spent = dict.fromkeys(METHODS, 0.0)
+    tasks = [(m, s) for b in args.bands for m in METHODS for s in settings(m, [b])[:1]]
+    tasks += [(m, s) for m in METHODS for s in settings(m, [])]
+    for method, setting in tasks:
+        if (method, json.dumps(setting)) in known:
+            continue
+        left = args.seconds - spent[method]
+        ran = [r for r in entry["measured"] if r["method"] == method and "seconds" in r and "bands" in r["setting"]]
+        last = max(ran, key=lambda r: r["setting"]["bands"], default=None)
+        guess = 0.0
+        if last is not None and "bands" in setting:
+            guess = last["seconds"] * (setting["bands"] / last["setting"]["bands"]) ** 2
+        if guess > left:
+            row = {"failed": "left out: over the budget of seconds"}
+        else:
+            task = {"scene": name, "method": method, "setting": setting, "threads": args.threads}
+            task |= {"most_seconds": min(left, args.seconds / 4), "repeats": 1 if args.quick else REPEATS}
+            start = time.perf_counter()
+            row = run_apart(task, max(left, args.seconds / 2) + 2)
+            spent[method] += time.perf_counter() - start
+        entry["measured"].append({"method": method, "setting": setting} | row)
+        keep()
+        print(f"{name:18}{method:11}{json.dumps(setting):20}{summary(row)}", flush=True)
+
+
+def summary(row: dict) -> str:
+    """One line of what came out."""
+    if "failed" in row:
+        return row["failed"]
+    found = ", ".join(f"{e['rms']:.3f}" for e in row["errors"].values())
+    return f"{row['seconds']:8.2f} s  {row['peak_gb']:.2f} GB  RMS {found} %"
+
+
+def overall(row: dict) -> tuple[float, float]:
+    """RMS and largest error over all values of all lights, in percent."""
+    found = row["errors"].values()
+    count = sum(e["values"] for e in found)
+    return (sum(e["rms"] ** 2 * e["values"] for e in found) / count) ** 0.5, max(abs(e["largest"]) for e in found)
+
+
+def label(setting: dict) -> str:
+    """A setting in words."""
+    return f"{setting['bands']} bands" if "bands" in setting else f"accuracy {100 * setting['accuracy']:g} %"
+
+
+def in_order(rows: list[dict]) -> list[dict]:
+    """Bands rising, then accuracies falling."""
+    return sorted(rows, key=lambda r: (r["setting"].get("bands", 10_000), -r["setting"].get("accuracy", 0)))
+
+
+def percent(value: float) -> str:
+    """Three digits that count, no more than three decimals."""
+    return f"{value:.3f}" if abs(value) < 1 else f"{value:.2f}" if abs(value) < 10 else f"{value:.0f}"
+
+
+def summary_table(kept: dict, bands: int) -> list[str]:
+    """Both methods at one number of bands, a line for each scene."""
+    out = [
+        f"| scene, at {bands} bands | polygons | published: s | RMS % | largest % "
+        "| solver: s | RMS % | largest % | errors, ratio |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for name, entry in kept.items():
+        cells, rms = [], []
+        for method in METHODS:
+            row = next(
+                (r for r in entry["measured"] if r["method"] == method and r["setting"] == {"bands": bands}), None
+            )
+            if row is None or "failed" in row:
+                cells += ["–", "–", "–"]
+            else:
+                total, largest = overall(row)
+                rms.append(total)
+                cells += [f"{row['seconds']:.2f}", percent(total), percent(largest)]
+        ratio = f"{rms[0] / rms[1]:.0f}" if len(rms) == 2 and rms[1] > 1e-4 else "–"
+        out.append(f"| [{name}](#{name.replace('_', '-')}) | {entry['quads']} | {' | '.join(cells)} | {ratio} |")
+    return out
+
+
+def scene_tables(name: str, entry: dict, bands: int) -> list[str]:
+    """All settings of a scene, and its lights one by one at ``bands`` bands."""
+    rows = in_order(entry["measured"])
+    out = [
+        f"### {name.replace('_', '-')}",
+        "",
+        f"{entry['title']}; {entry['quads']} polygons.",
+        f"Reference: {entry['origin']}.",
+        "",
+    ]
+    out += [
+        "| method | setting | faces | seconds | runs | memory GB | RMS % | largest % |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for method in METHODS:
+        for row in rows:
+            if row["method"] != method:
+                continue
+            if "failed" in row:
+                out.append(f"| {method} | {label(row['setting'])} | {row['failed']} | | | | | |")
+                continue
+            total, largest = overall(row)
+            cells = f"{row['faces']:,} | {row['seconds']:.2f} | {row['runs']} | {row['peak_gb']:.2f}"
+            out.append(f"| {method} | {label(row['setting'])} | {cells} | {percent(total)} | {percent(largest)} |")
+    out += [
+        "",
+        f"| light, at {bands} bands | values | reference's own noise % "
+        "| published: RMS % | mean % | solver: RMS % | mean % |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    at = {r["method"]: r for r in rows if r["setting"] == {"bands": bands} and "failed" not in r}
+    for light, noise in entry["noise"].items():
+        count = next((str(r["errors"][light]["values"]) for r in at.values()), "–")
+        cells = []
+        for method in METHODS:
+            found = at[method]["errors"][light] if method in at else None
+            cells += ["–", "–"] if found is None else [percent(found["rms"]), f"{found['mean']:+.2f}"]
+        out.append(f"| {light} | {count} | {percent(noise) if noise else '0'} | {' | '.join(cells)} |")
+    return [*out, ""]
+
+
+def page(state: dict, picture: str) -> str:
+    """What was measured, in Markdown."""
+    kept, about = state["scenes"], state["about"]
+    used = {r["setting"]["bands"] for e in kept.values() for r in e["measured"] if "bands" in r["setting"]}
+    bands = 60 if 60 in used else max(used)
+    lines = [
+        "## Measured",
+        "",
+        f"{about['date']}, commit {about['commit']}; Python {about['python']}, NumPy {about['numpy']}, "
+        f"{about['machine']}, {about['cores']} cores, {about['threads']} threads.",
+        "",
+        *summary_table(kept, bands),
+        "",
+        f"![Error against seconds, both axes logarithmic]({picture})",
+        "",
+    ]
+    for name, entry in kept.items():
+        lines += scene_tables(name, entry, bands)
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def draw(state: dict, path: Path) -> None:
+    """Error against seconds, both logarithmic, a small plot for each scene."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    kept = state["scenes"]
+    columns = min(3, len(kept))
+    lines = -(-len(kept) // columns)
+    figure, axes = plt.subplots(
+        lines, columns, figsize=(4.4 * columns, 3.7 * lines), squeeze=False, layout="constrained"
+    )
+    style = {"published": ("tab:orange", "o"), "solver": ("tab:blue", "s")}
+    for ax, (name, entry) in zip(axes.flat, kept.items(), strict=False):
+        for method, title in METHODS.items():
+            colour, marker = style[method]
+            rows = [r for r in in_order(entry["measured"]) if r["method"] == method and "failed" not in r]
+            for by, fill in (("bands", colour), ("accuracy", "none")):
+                some = [r for r in rows if by in r["setting"]]
+                if not some:
+                    continue
+                x, y = [r["seconds"] for r in some], [max(overall(r)[0], 1e-4) for r in some]
+                line = "-" if by == "bands" else ":"
+                what = title if by == "bands" else f"{title}, by accuracy"
+                ax.loglog(x, y, line, color=colour, marker=marker, markerfacecolor=fill, markersize=5, label=what)
+                for place, row in zip(zip(x, y, strict=True), some, strict=True):
+                    text = f"{row['setting'][by]:g}"
+                    ax.annotate(text, place, xytext=(3, 4), textcoords="offset points", fontsize=7, color=colour)
+        counts = [r["errors"] for r in entry["measured"] if "errors" in r]
+        if counts and any(entry["noise"].values()):
+            share = {k: e["values"] for k, e in counts[0].items()}
+            noise = (sum(entry["noise"][k] ** 2 * n for k, n in share.items()) / sum(share.values())) ** 0.5
+            ax.axhline(noise, color="grey", linestyle="--", linewidth=0.8, label="noise of the reference")
+        for limits, set_limits in ((ax.get_xlim(), ax.set_xlim), (ax.get_ylim(), ax.set_ylim)):
+            low, high = np.log10(limits)
+            set_limits(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
+        ax.set_title(name.replace("_", " "), fontsize=10)
+        ax.grid(True, which="both", linewidth=0.3, alpha=0.5)
+        ax.set_xlabel("seconds", fontsize=8)
+        ax.set_ylabel("RMS error %", fontsize=8)
+        ax.tick_params(labelsize=7)
+    for ax in list(axes.flat)[len(kept) :]:
+        ax.axis("off")
+    handles = {t: h for ax in axes.flat for h, t in zip(*ax.get_legend_handles_labels(), strict=True)}
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, fontsize=9, frameon=False)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def about(threads: int) -> dict:
+    """Where and when the measurements are made."""
+
+    def git(*words: str) -> str:
+        done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
+        return done.stdout.strip()
+
+    commit = git("rev-parse", "--short", "HEAD") or "unknown"
+    changed = " with changes of the solver on top" if git("status", "--porcelain", "--", "core") else ""
+    return {
+        "date": datetime.date.today().isoformat(),
+        "commit": commit + changed,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "machine": f"{platform.system()} {platform.machine()}",
+        "cores": os.cpu_count(),
+        "threads": threads,
+    }
+
+
+def write_docs(state: dict, docs: Path) -> None:
+    """Put picture and tables into docs/, below what was written there by hand."""
+    draw(state, docs / "images" / "time_and_error.png")
+    path = docs / "time-and-error.md"
+    head = path.read_text(encoding="utf-8").split(MARK)[0].rstrip() if path.exists() else "# Time and error"
+    path.write_text(f"{head}\n\n{MARK}\n\n{page(state, 'images/time_and_error.png')}", encoding="utf-8")
+
+
+def main():
+    ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    ap.add_argument("--quick", action="store_true", help="8 bands, one run each: only to see that it runs")
+    ap.add_argument("--scenes", nargs="+", choices=scenes.NAMES, default=list(scenes.NAMES))
+    ap.add_argument("--bands", nargs="+", type=int, default=list(BANDS))
+    ap.add_argument("--seconds", type=float, default=30.0, help="budget for each scene and method")
+    ap.add_argument("--threads", type=int, default=os.cpu_count() or 1)
+    ap.add_argument("--output", type=Path, default=ROOT / "build" / "time_and_error")
+    ap.add_argument("--fresh", action="store_true", help="measure again what was measured at this commit")
+    ap.add_argument("--docs", action="store_true", help="write docs/time-and-error.md and its picture")
+    ap.add_argument("--one", help=argparse.SUPPRESS)
+    args = ap.parse_args()
+    if args.one:
+        task = json.loads(args.one)
+        print(json.dumps(run_here(task.pop("scene"), **task)))
+        return
+    if args.quick:
+        args.bands = [8]
+    args.output.mkdir(parents=True, exist_ok=True)
+    path = args.output / "measurements.json"
+    state = {"about": about(args.threads), "scenes": {}}
+    if path.exists() and not args.fresh:
+        before = json.loads(path.read_text(encoding="utf-8"))
+        same = ("commit", "threads", "numpy", "cores")
+        if all(before["about"][key] == state["about"][key] for key in same):
+            state["scenes"] = before["scenes"]
+
+    def keep() -> None:
+        path.write_text(json.dumps(state, indent=1) + "\n", encoding="utf-8")
+
+    for name in args.scenes:
+        measure_scene(name, args, state["scenes"], keep)
+    state["scenes"] = {name: state["scenes"][name] for name in scenes.NAMES if name in state["scenes"]}
+    keep()
+    draw(state, args.output / "time_and_error.png")
+    (args.output / "time-and-error.md").write_text(
+        f"# Time and error\n\n{page(state, 'time_and_error.png')}", encoding="utf-8"
+    )
+    if args.docs:
+        write_docs(state, ROOT / "docs")
+    print(f"\n{args.output / 'time-and-error.md'}")
+
+
+if __name__ == "__main__":
+    main()
