@@ -51,6 +51,8 @@ class Gathered:
     ----------
     patches : (r, p) float32
         Form factor to each patch, direct and through specular chains.
+    deep : (r, p) float32, or None where there is none
+        The part of ``patches`` that comes by more mirrors than bright polygons are followed through.
     sky_direct, sky_specular : (r, c) float32, or None where no mirror was seen
         Form factor to each sky parcel, and last to the ground.
     unlit : (r,) float32
@@ -60,6 +62,7 @@ class Gathered:
     """
 
     patches: np.ndarray
+    deep: np.ndarray | None
     sky_direct: np.ndarray
     sky_specular: np.ndarray | None
     unlit: np.ndarray
@@ -84,21 +87,32 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
     rows = len(points)
     patches = np.zeros((rows, targets.patches.count))
     direct = np.zeros((rows, targets.columns), np.float32)
-    specular = None
+    deep = specular = None
     unlit = np.zeros(rows)
     sightings, truncated = sight.sightings(points, checkpoint)
     for s in sightings:
         parts = s.part_weights()
-        _add_patches(s, parts, targets, patches, unlit)
-        if s.mirrored:
+        if s.mirrors > sight.limits.exact_mirrors:
+            deep = np.zeros_like(patches) if deep is None else deep
+            _add_patches(s, parts, targets, deep, unlit)
+        else:
+            _add_patches(s, parts, targets, patches, unlit)
+        if s.mirrors:
             specular = np.zeros_like(direct) if specular is None else specular
             _add_mirrored_sky(s, targets, specular)
             _splat(s, parts, targets, specular)
         else:
             _add_sky(s, targets, sight.hemisphere, direct)
             _splat(s, parts, targets, direct)
+    if deep is not None:
+        patches += deep
     return Gathered(
-        patches.astype(np.float32), direct, specular, unlit.astype(np.float32), truncated.astype(np.float32)
+        patches=patches.astype(np.float32),
+        deep=None if deep is None else deep.astype(np.float32),
+        sky_direct=direct,
+        sky_specular=specular,
+        unlit=unlit.astype(np.float32),
+        truncated=truncated.astype(np.float32),
     )
 
 

@@ -206,6 +206,7 @@ class Result:
         out += self.sunlight.at(geometry.outlines, place, normal)
         exitance = self.field.patch_emitted + (0.0 if initial else self.field.patch_exitance)
         sources = self.field.sources[: self.field.emitters] if initial else self.field.sources
+        deep = self.field.deep_emitted + (0.0 if initial else self.field.deep_reflected)
         for rows in _coplanar(place, normal, geometry.outlines.tolerance):
             n = normal[rows[0]]
             sight = GroupSight(
@@ -219,7 +220,9 @@ class Result:
                 seen = gather(sight, place[some], geometry.targets)
                 sky = seen.sky_direct if seen.sky_specular is None else seen.sky_direct + seen.sky_specular
                 out[some] += np.pi * (sky @ self.sky) + seen.patches @ exitance
-                out[some] += gather_sources(geometry.outlines, sources, place[some], n, transfer.limits.cutoff)
+                out[some] += gather_sources(geometry.outlines, sources, place[some], n, transfer.limits)
+                if seen.deep is not None:
+                    out[some] += seen.deep @ deep
         return out
 
     @cached_property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +14,7 @@ from .result import Result
 from .sources import Source, gather_sources
 from .stages import Progress, Recorder
 from .sunlight import NO_SUNLIGHT, Sunlight, trace_sun
-from .transfer import Geometry, Transfer, run_parallel
+from .transfer import Geometry, Transfer, chunks_of_receivers, run_parallel
 
 EXACT_OUTLINES = 400
 """Scenes of more outlines gather luminous surfaces and sun patches by the globe, like all other light."""
@@ -40,6 +39,9 @@ class Field:
         The bright few: luminous surfaces, and sun patches as diffuse emitters.
     emitters : int
         How many of ``sources`` are luminous surfaces; the rest are sun patches.
+    deep_emitted, deep_reflected : (p,) float
+        Exitance of those luminous surfaces and of the sun patches, as the globe gathers it by way of more mirrors than
+        ``sources`` are followed through [lm/m²].
     """
 
     components: dict[str, np.ndarray]
@@ -47,6 +49,8 @@ class Field:
     patch_emitted: np.ndarray
     sources: list[Source]
     emitters: int
+    deep_emitted: np.ndarray
+    deep_reflected: np.ndarray
 
 
 def solve_light(
@@ -92,7 +96,7 @@ def solve_light(
     if geometry.targets.patches.count == 0:
         recorder.skip("interreflection", "no surface reflects or emits diffusely")
         components["interreflected"] = np.zeros(count)
-        field = Field(components, np.zeros(0), np.zeros(0), [], 0)
+        field = Field(components, np.zeros(0), np.zeros(0), [], 0, np.zeros(0), np.zeros(0))
     else:
         with recorder.stage("interreflection", 0.1):
             field = interreflect(transfer, components, sunlight, reflectance, emitted, tolerance, cycles, recorder)
@@ -135,18 +139,23 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     geometry = transfer.geometry
     emitters, sunny = bright_few(geometry, sunlight)
     sun = components["sun_direct"] + components["sun_specular"]
-    by_globe = np.zeros(len(emitted))
+    none = np.zeros(len(emitted))
+    by_globe, deep_emitted, deep_reflected = none, none, none
     if len(geometry.outlines.vertices) > EXACT_OUTLINES:
         by_globe, emitters, sunny = emitted, [], []
         components["emitted"] = transfer.on_elements(gather_patches(transfer, emitted))
     elif emitters:
-        components["emitted"] = _gather_elements(transfer, emitters, recorder)
+        deep_emitted = emitted
+        components["emitted"] = _gather_bright(transfer, emitters, deep_emitted, _Span(recorder, 0.1, 0.4))
     smooth = components["sky_direct"] + components["sky_specular"] + components["emitted"]
     smooth = smooth + (sunlight.blur if sunny else sun)
     if cycles == 0 or not reflectance.any():
         components["interreflected"] = np.zeros(len(sun))
-        return Field(components, np.zeros(len(reflectance)), by_globe, emitters, len(emitters))
-    first = _gather_elements(transfer, sunny, recorder) if sunny else np.zeros(len(sun))
+        return Field(components, none, by_globe, emitters, len(emitters), deep_emitted, none)
+    first = np.zeros(len(sun))
+    if sunny:
+        deep_reflected = reflectance * patch_means(geometry, sun - sunlight.blur)
+        first = _gather_bright(transfer, sunny, deep_reflected, _Span(recorder, 0.4, 0.8))
     smooth, once = patch_means(geometry, smooth), patch_means(geometry, first)
 
     def checkpoint() -> None:
@@ -158,7 +167,8 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
         settled = _cycles_after_first(transfer.patch_factors, reflectance, smooth, once, cycles, checkpoint)
     exitance = reflectance * settled
     components["interreflected"] = first + transfer.on_elements(gather_patches(transfer, exitance))
-    return Field(components, exitance, by_globe, [*emitters, *sunny], len(emitters))
+    sources = [*emitters, *sunny]
+    return Field(components, exitance, by_globe, sources, len(emitters), deep_emitted, deep_reflected)
 
 
 def _cycles_after_first(factors, reflectance, smooth, first, cycles: int, checkpoint) -> np.ndarray:
@@ -190,22 +200,32 @@ def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], li
     return emitters, sunny
 
 
-def _gather_elements(transfer: Transfer, sources: list[Source], recorder: Recorder) -> np.ndarray:
+@dataclass(frozen=True)
+class _Span:
+    """The stretch of a run's progress that one step covers."""
+
+    recorder: Recorder
+    first: float
+    last: float
+
+    def report(self, done: float) -> None:
+        self.recorder.report(self.first + (self.last - self.first) * done, "interreflection")
+
+
+def _gather_bright(transfer: Transfer, sources: list[Source], deep: np.ndarray, span: _Span) -> np.ndarray:
+    """(e,) float: illuminance from bright polygons; by way of many mirrors, from their patches of exitance ``deep``."""
     geometry, nodes = transfer.geometry, transfer.nodes
     found = np.zeros(len(nodes.points))
-    order = np.argsort(nodes.sheet, kind="stable")
-    bounds = np.flatnonzero(np.concatenate(([True], np.diff(nodes.sheet[order]) > 0, [True])))
-    tasks = []
-    for a, b in itertools.pairwise(bounds):
-        tasks += [order[k : min(k + _SOURCE_ROWS, b)] for k in range(a, b, _SOURCE_ROWS)]
+    tasks = chunks_of_receivers(nodes.points, nodes.sheet, geometry.planes, _SOURCE_ROWS)
 
     def work(members, checkpoint):
         normal = geometry.element_normals[nodes.element[members[0]]]
         found[members] = gather_sources(
-            geometry.outlines, sources, nodes.points[members], normal, transfer.limits.cutoff, checkpoint
+            geometry.outlines, sources, nodes.points[members], normal, transfer.limits, checkpoint
         )
 
-    run_parallel(work, tasks, transfer.threads, lambda done: recorder.report(0.1 + 0.6 * done, "interreflection"))
+    run_parallel(work, tasks, transfer.threads, span.report)
+    found[transfer.deep_rows] += product(transfer.deep_factors, deep)
     return transfer.on_elements(found)
 
 

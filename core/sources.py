@@ -15,7 +15,7 @@ import numpy as np
 from . import polygons
 from .materials import Material
 from .projection import HalfSpace, reflect, reflect_points
-from .specular import DEEPEST_CHAIN, Outlines
+from .specular import ChainLimits, Outlines
 
 _FAINT = 1e-2
 """Mirrored images this much fainter than the cut-off, by the source's share in all flux, are not looked for."""
@@ -80,7 +80,7 @@ def gather_sources(
     sources: list[Source],
     points,
     normal,
-    cutoff: float,
+    limits: ChainLimits,
     checkpoint: Callable[[], None] = lambda: None,
 ) -> np.ndarray:
     """Illuminance from sources at receivers of one plane, direct, through panes and in mirrors.
@@ -92,8 +92,8 @@ def gather_sources(
     points : (r, 3) float
         In one plane.
     normal : (3,) float, unit
-    cutoff : float
-        Smallest product of reflectances and transmittances that is followed.
+    limits : ChainLimits
+        Images by more than ``exact_mirrors`` are left out.
     checkpoint : callable
         Called between sources; may raise to stop.
 
@@ -105,10 +105,10 @@ def gather_sources(
     if not sources or not len(points):
         return total
     horizon = HalfSpace(np.asarray(normal, float), float(np.asarray(normal) @ points[0]))
-    lit = _above(outlines.vertices, horizon, outlines.tolerance)
-    mirrors = [int(o) for o in np.flatnonzero(lit) if outlines.materials[o].is_specular]
+    # one in the receivers' own plane too: it comes into view by way of others
+    mirrors = [o for o, material in enumerate(outlines.materials) if material.is_specular]
     flux = np.array([source.exitance * float(polygons.areas(source.polygon)) for source in sources])
-    view = _SourceView(outlines, sources, flux / flux.sum(), mirrors, cutoff, checkpoint)
+    view = _SourceView(outlines, sources, flux / flux.sum(), mirrors, limits, checkpoint)
     return view.illuminance(_Leg(np.asarray(points, float), horizon, None, (), (), 1.0, None, 0))
 
 
@@ -180,17 +180,17 @@ class _SourceView:
     sources: list[Source]
     flux: np.ndarray
     mirrors: list[int]
-    cutoff: float
+    limits: ChainLimits
     checkpoint: Callable[[], None]
 
     def illuminance(self, leg: _Leg) -> np.ndarray:
         """(r,) float: light that comes past the leg's screens, and by any further mirror [lx]."""
         total = np.zeros(len(leg.points))
         for source, flux in zip(self.sources, self.flux, strict=True):
-            if leg.depth == 0 or leg.throughput * flux > _FAINT * self.cutoff:
+            if leg.depth == 0 or leg.throughput * flux > _FAINT * self.limits.cutoff:
                 self.checkpoint()
                 self._add_source(leg, source, total)
-        if leg.depth < DEEPEST_CHAIN:
+        if leg.depth < self.limits.exact_mirrors:
             for mirror in self.mirrors:
                 self._add_mirrored(leg, mirror, total)
         return total
@@ -214,7 +214,7 @@ class _SourceView:
         material = outlines.materials[mirror]
         throughput = leg.throughput * float(material.specular_at(np.linspace(0.05, 1.0, 8)).max())
         outline = outlines.vertices[mirror]
-        if throughput < self.cutoff:
+        if throughput < self.limits.cutoff:
             return
         if leg.beyond is not None and not _above(outline[None], leg.beyond, tolerance)[0]:
             return  # the mirror just used, or one in its plane

@@ -27,6 +27,9 @@ MANY_OUTLINES = 2_500
 
 _FEW_BEAMS = 2_500
 
+_MOST_IMAGES = 80
+_DEEPEST_IMAGE = 6
+
 _WITHIN = 4e-5
 """Angle from a mirror's edge that centres of parts keep [rad], so that nothing that stands at the edge is before it."""
 
@@ -88,8 +91,8 @@ class Sighting:
     weights : (r, k) float
         Cosine weight of each beam times the reflectances and transmittances on the way here; 0 where the beam did
         not come.
-    mirrored : bool
-        Whether at least one mirror was on the way.
+    mirrors : int
+        How many mirrors were on the way; for single rays one number stands for all of a kind, see `ChainLimits.kind`.
     outlines : Outlines
     partial : Partial or None
         Beams of which only a part came here.
@@ -104,7 +107,7 @@ class Sighting:
     obstacles: Obstacles
     view: View
     weights: np.ndarray
-    mirrored: bool
+    mirrors: int
     outlines: Outlines
     partial: Partial | None = None
     rays: bool = False
@@ -133,9 +136,32 @@ class ChainLimits:
     ----------
     cutoff : float
         Smallest product of reflectances and transmittances that is still followed.
+    exact_mirrors : int
+        Up to this many mirrors on the way, bright polygons are gathered exactly (see `sources`).
     """
 
     cutoff: float = 1e-3
+    exact_mirrors: int = 0
+
+    def kind(self, mirrors: np.ndarray) -> np.ndarray:
+        """0, 1 or the first number beyond `exact_mirrors`: what sightings that share a treatment are known by."""
+        return np.where(mirrors > self.exact_mirrors, self.exact_mirrors + 1, np.minimum(mirrors, 1))
+
+
+def exact_mirrors(outlines: Outlines) -> int:
+    """How many mirrors on the way leave images few enough to be looked for one by one.
+
+    Between n mirrors there are at most n (n − 1)^(k − 1) images of order k; between those of a box, which meet at
+    right angles, about 4 k² + 2.
+    """
+    n = sum(m.is_specular for m in outlines.materials)
+    images, order = 0, 0
+    while order < _DEEPEST_IMAGE:
+        images += min(n * max(n - 1, 1) ** order, 4 * (order + 1) ** 2 + 2)
+        if order and images > _MOST_IMAGES:
+            break
+        order += 1
+    return order
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,11 +243,11 @@ class _Rays:
     directions: np.ndarray
     weights: np.ndarray
     throughput: np.ndarray
-    mirrored: np.ndarray
+    mirrors: np.ndarray
     depth: np.ndarray
 
     @classmethod
-    def of(cls, rows, points, directions, weights, throughput: float, mirrored: bool, depth: int) -> _Rays:
+    def of(cls, rows, points, directions, weights, throughput: float, mirrors: int, depth: int) -> _Rays:
         """One ray for each beam ``(r, k)`` of any weight."""
         row, beam = np.nonzero(weights)
         n = len(row)
@@ -231,7 +257,7 @@ class _Rays:
             directions[beam],
             weights[row, beam],
             np.full(n, throughput),
-            np.full(n, mirrored),
+            np.full(n, mirrors),
             np.full(n, depth),
         )
 
@@ -244,12 +270,12 @@ class _Rays:
         weights,
         partial: Partial | None,
         throughput: float,
-        mirrored: bool,
+        mirrors: int,
         past: HalfSpace,
         depth: int,
     ) -> _Rays:
         """Rays of mirrored receivers, set forward to the mirror's plane; partial beams in their own direction."""
-        rays = cls.of(rows, points, beams.directions, weights, throughput, mirrored, depth)
+        rays = cls.of(rows, points, beams.directions, weights, throughput, mirrors, depth)
         directions = rays.directions
         if partial is not None:
             place = np.zeros(weights.shape, np.int64)
@@ -271,7 +297,7 @@ class _Rays:
                 np.zeros((0, 3)),
                 none,
                 none,
-                none.astype(bool),
+                none.astype(np.int64),
                 none.astype(np.int64),
             )
         return cls(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)))
@@ -289,12 +315,12 @@ class _Rays:
             reflect(self.directions, normal) if mirror else self.directions,
             self.weights * share,
             self.throughput * share,
-            self.mirrored | mirror,
+            self.mirrors + mirror,
             self.depth + 1,
         )
 
 
-def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrored: bool, beams: Beams) -> Sighting:
+def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrors: int, beams: Beams) -> Sighting:
     n = len(rays.rows)
     view = View(
         seen=np.full((n, 0), SHARED, np.int32),
@@ -315,7 +341,7 @@ def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrored: bool, beam
         outlines.whole,
         view,
         rays.weights[:, None],
-        mirrored,
+        mirrors,
         outlines,
         rays=True,
     )
@@ -377,12 +403,12 @@ class GroupSight:
         horizon = HalfSpace(hemisphere.normal, self.offset)
         left = []
         if len(self.outlines.vertices) > MANY_OUTLINES:
-            left.append(_Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, False, 0))
+            left.append(_Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, 0, 0))
             stack = []
         else:
-            stack = [(np.arange(len(points)), points, horizon, (), beams, weights, None, 1.0, False, ())]
+            stack = [(np.arange(len(points)), points, horizon, (), beams, weights, None, 1.0, 0, ())]
         while stack:
-            rows, origin, horizon, beyond, beams, weights, partial, throughput, mirrored, chain = stack.pop()
+            rows, origin, horizon, beyond, beams, weights, partial, throughput, mirrors, chain = stack.pop()
             checkpoint()
             obstacles = self._cut(chain, [horizon, *beyond])
             view = look(
@@ -395,7 +421,7 @@ class GroupSight:
                 partial,
             )
             sighting = Sighting(
-                rows, origin, horizon.normal, beams, obstacles, view, weights, mirrored, self.outlines, partial
+                rows, origin, horizon.normal, beams, obstacles, view, weights, mirrors, self.outlines, partial
             )
             yield sighting
             if self.outlines.any_specular:
@@ -409,10 +435,10 @@ class GroupSight:
         while len(rays.rows):
             checkpoint()
             outline, distance = self.outlines.rays.nearest(rays.points, rays.directions)
-            for mirrored in (False, True):
-                mine = np.flatnonzero(rays.mirrored == mirrored)
-                if len(mine):
-                    yield _ray_sighting(self.outlines, rays.take(mine), outline[mine], mirrored, none)
+            kinds = self.limits.kind(rays.mirrors)
+            for kind in np.unique(kinds):
+                mine = np.flatnonzero(kinds == kind)
+                yield _ray_sighting(self.outlines, rays.take(mine), outline[mine], int(kind), none)
             met = np.flatnonzero(outline >= 0)
             place = rays.points[met] + distance[met, None] * rays.directions[met]
             onward = []
@@ -465,12 +491,12 @@ class GroupSight:
                         beams, ahead = beams.reflected(normal), horizon.reflected(normal, offset)
                         points, direction = reflect_points(points, normal, offset), reflect(direction, normal)
                         window = None if window is None else reflect(window, normal).astype(np.float32)
-                    mirrored = s.mirrored or kind == "mirror"
+                    mirrors = s.mirrors + (kind == "mirror")
                     partial = self._partial(onward, direction, points, int(o), window)
                     if chain and np.count_nonzero(onward.weights) < _FEW_BEAMS:
                         left.append(
                             _Rays.beyond(
-                                rows, points, beams, onward.weights, partial, product, mirrored, past, len(chain) + 1
+                                rows, points, beams, onward.weights, partial, product, mirrors, past, len(chain) + 1
                             )
                         )
                         continue
@@ -485,7 +511,7 @@ class GroupSight:
                             onward.weights,
                             partial,
                             product,
-                            mirrored,
+                            mirrors,
                             (*chain, step),
                         )
                     )

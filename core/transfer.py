@@ -7,7 +7,7 @@ import math
 import os
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -19,11 +19,14 @@ from .globe import Globe
 from .nodes import Nodes
 from .planes import Planes, find_planes
 from .scene import Scene
-from .specular import ChainLimits, GroupSight, Outlines
+from .specular import ChainLimits, GroupSight, Outlines, exact_mirrors
 from .stages import Progress, Recorder, Stage
 
 PATCHES = 2_000
 """Patches that exitance is resolved in."""
+
+_POLL = 0.1
+"""Seconds between looks whether the user wants to stop."""
 
 _CHUNK_CELLS = 250_000
 """Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
@@ -74,6 +77,10 @@ class Transfer:
     sky_specular : (k, c) float32
         The same by way of mirrors, for the nodes in ``specular_rows``.
     specular_rows : (k,) int
+    deep_factors : (j, p) float32
+        The part of ``form_factors`` that comes by more mirrors than bright polygons are followed through, for the nodes
+        in ``deep_rows``.
+    deep_rows : (j,) int
     patch_factors : (p, p) float
         From patch to patch: area-weighted means over each patch's nodes.
     unlit, truncated : (m,) float32
@@ -88,6 +95,8 @@ class Transfer:
     sky_direct: np.ndarray
     sky_specular: np.ndarray
     specular_rows: np.ndarray
+    deep_factors: np.ndarray
+    deep_rows: np.ndarray
     patch_factors: np.ndarray
     unlit: np.ndarray
     truncated: np.ndarray
@@ -181,12 +190,13 @@ def prepare(
         geometry = make_geometry(scene, planes, globe, max_area)
     _check_memory(geometry, memory)
     with recorder.stage("visibility and form factors", 0.02):
-        limits = ChainLimits(specular_cutoff)
+        limits = ChainLimits(specular_cutoff, exact_mirrors(geometry.outlines))
         gathered, patch_factors, nodes, steps = _gather_elements(geometry, limits, threads, recorder)
     if not geometry.outlines.any_specular:
         recorder.skip("specular chains", "no surface mirrors or transmits regularly")
     recorder.report(1.0, "prepared")
     specular_rows = np.flatnonzero(gathered.specular_rows)
+    deep_rows = np.array(sorted(gathered.deep), np.int64)
     return Transfer(
         geometry=geometry,
         form_factors=gathered.form_factors,
@@ -195,6 +205,8 @@ def prepare(
         if len(specular_rows)
         else np.zeros((0, geometry.targets.columns), np.float32),
         specular_rows=specular_rows,
+        deep_factors=np.array([gathered.deep[row] for row in deep_rows], np.float32).reshape(len(deep_rows), -1),
+        deep_rows=deep_rows,
         patch_factors=patch_factors,
         unlit=gathered.unlit,
         truncated=gathered.truncated,
@@ -238,36 +250,35 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
     )
 
 
-def chunks_of_receivers(points, sheet, planes: Planes, beams: int) -> list[np.ndarray]:
-    """Receivers of one plane that lie near each other, in chunks that stay in cache.
+def chunks_of_receivers(points, sheet, planes: Planes, most: int) -> list[np.ndarray]:
+    """Receivers of one plane that lie near each other, in chunks.
 
     Parameters
     ----------
     points : (m, 3) float
     sheet : (m,) int, plus the number of sheets for backs
     planes : Planes
-    beams : int
-        About how many beams each receiver has.
+    most : int
+        Receivers in a chunk.
 
     Returns
     -------
     list of (k,) int arrays
     """
-    size = max(8, _CHUNK_CELLS // max(beams, 1))
     fronts = len(planes.sheet_surface)
     order = np.argsort(sheet, kind="stable")
     bounds = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0, [True])))
     chunks = []
     for a, b in itertools.pairwise(bounds):
         members = order[a:b]
-        if len(members) > size:
+        if len(members) > most:
             place = points[members] @ planes.sheet_axes[sheet[members[0]] % fronts].T
             extent = np.maximum(np.ptp(place, axis=0), 1e-300)
-            blocks = len(members) / size
+            blocks = len(members) / most
             cell = math.sqrt(extent.prod() / blocks) if extent.min() > 1e-9 * extent.max() else extent.max() / blocks
             block = np.floor((place - place.min(axis=0)) / cell)
             members = members[np.lexsort((place[:, 1], block[:, 1], block[:, 0]))]
-        chunks += [members[k : k + size] for k in range(0, len(members), size)]
+        chunks += [members[k : k + most] for k in range(0, len(members), most)]
     return chunks
 
 
@@ -284,6 +295,7 @@ class _Rows:
     specular_rows: np.ndarray
     unlit: np.ndarray
     truncated: np.ndarray
+    deep: dict[int, np.ndarray]
 
     @classmethod
     def empty(cls, count: int, geometry: Geometry) -> _Rows:
@@ -296,6 +308,7 @@ class _Rows:
             np.zeros(count, bool),
             np.zeros(count, np.float32),
             np.zeros(count, np.float32),
+            {},
         )
 
     def put(self, members: np.ndarray, rows: Gathered) -> None:
@@ -306,12 +319,17 @@ class _Rows:
         if rows.sky_specular is not None:
             self.sky_specular[members] = rows.sky_specular
             self.specular_rows[members] = True
+        if rows.deep is not None:
+            lit = np.flatnonzero(rows.deep.any(axis=1))
+            self.deep.update(zip(members[lit].tolist(), rows.deep[lit], strict=True))
 
 
 def _gather_elements(geometry: Geometry, limits: ChainLimits, threads: int, recorder: Recorder):
     nodes = Nodes.of(geometry.fracture)
     rows = _Rows.empty(len(nodes.points), geometry)
-    chunks = chunks_of_receivers(nodes.points, nodes.sheet, geometry.planes, geometry.targets.globe.count // 2)
+    # so many that receivers times beams stay in cache
+    most = max(8, _CHUNK_CELLS // max(geometry.targets.globe.count // 2, 1))
+    chunks = chunks_of_receivers(nodes.points, nodes.sheet, geometry.planes, most)
     sights: dict[int, GroupSight] = {}
     for members in chunks:
         sheet = int(nodes.sheet[members[0]])
@@ -323,7 +341,10 @@ def _gather_elements(geometry: Geometry, limits: ChainLimits, threads: int, reco
         sight = sights[int(nodes.sheet[members[0]])]
         rows.put(members, gather(sight, nodes.points[members], geometry.targets, checkpoint))
 
-    run_parallel(work, chunks, threads, lambda done: recorder.report(0.02 + 0.94 * done, "visibility and form factors"))
+    def report(done: float) -> None:
+        recorder.report(0.02 + 0.94 * done, "visibility and form factors")
+
+    run_parallel(work, chunks, threads, report)
     steps = nodes.steps(rows.form_factors if rows.form_factors.shape[1] else rows.sky_direct)
     return rows, _patch_means(geometry, nodes, rows.form_factors), nodes, steps
 
@@ -331,7 +352,8 @@ def _gather_elements(geometry: Geometry, limits: ChainLimits, threads: int, reco
 def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[float], None]) -> None:
     """Run ``work(task, checkpoint)`` for each task on several threads.
 
-    Where ``report`` raises, tasks under way stop at their next checkpoint and the exception goes on to the caller.
+    ``report`` is called with the share of tasks done, and often enough for a user to stop a long one. Where it raises,
+    tasks under way stop at their next checkpoint and the exception goes on to the caller.
     """
     stop = threading.Event()
 
@@ -340,14 +362,18 @@ def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[fl
             raise Cancelled("Cancelled")
 
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        futures = [pool.submit(work, task, checkpoint) for task in tasks]
+        pending = {pool.submit(work, task, checkpoint) for task in tasks}
         try:
-            for done, future in enumerate(as_completed(futures), 1):
-                future.result()
+            done = 0
+            while pending:
+                finished, pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    future.result()
+                done += len(finished)
                 report(done / len(tasks))
         except BaseException:
             stop.set()
-            for future in futures:
+            for future in pending:
                 future.cancel()
             raise
 
