@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,7 +24,7 @@ ELEMENTS_PER_PLAIN_SURFACE = 96
 """Receivers inside a surface that neither emits nor reflects diffusely, and so is not cut itself."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Grid:
     """A run of triangles that are the halves of rows × columns cells.
 
@@ -33,11 +33,41 @@ class Grid:
     first : int
         The first triangle; those of a cell follow each other, then those of the next column.
     rows, columns : int
+    corner : (3,) float
+        Where the first cell begins.
+    along_rows, along_columns : (3,) float
+        From a cell to the one in the next row, and in the next column.
     """
 
     first: int
     rows: int
     columns: int
+    corner: np.ndarray
+    along_rows: np.ndarray
+    along_columns: np.ndarray
+
+    centroids = ((2 / 3, 1 / 3), (1 / 3, 2 / 3))
+    """Of a cell's halves, in cells along either axis."""
+
+    @property
+    def elements(self) -> slice:
+        """Its triangles."""
+        return slice(self.first, self.first + 2 * self.rows * self.columns)
+
+    @property
+    def normal(self) -> np.ndarray:
+        """(3,) float, unit."""
+        normal = polygons.cross(self.along_rows, self.along_columns)
+        return normal / np.linalg.norm(normal)
+
+    def in_cells(self, points) -> np.ndarray:
+        """(n, 2) float: places of points ``(n, 3)`` of its plane, in cells along either axis."""
+        axes = np.stack([self.along_rows, self.along_columns])
+        return np.linalg.solve(axes @ axes.T, axes @ (points - self.corner).T).T
+
+    def place(self, cells) -> np.ndarray:
+        """(3,) float: the point at a place in cells."""
+        return self.corner + cells[0] * self.along_rows + cells[1] * self.along_columns
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +140,7 @@ def cut_pieces(pieces, counts, max_areas) -> Triangles:
         cells = np.stack([np.stack([p, q, r], axis=2), np.stack([p, r, s], axis=2)], axis=2)
         triangles.append(cells.reshape(-1, 3, 3))
         order.append(np.full(2 * nu * nv, row))
-        shapes[int(row)] = (nu, nv)
+        shapes[int(row)] = (nu, nv, a, (b - a) / nu, (d - a) / nv)
     parent = np.concatenate(order)
     vertices = np.concatenate(triangles)
     arranged = np.argsort(parent, kind="stable")
@@ -280,9 +310,9 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
         first, last = np.searchsorted(parts.parent, [grid.first, grid.first + span])
         if last - first != span or span < 4 * 2:
             continue  # halved further, or too few cells to tell how light changes
-        grids.append(Grid(int(first), grid.rows, grid.columns))
+        grids.append(replace(grid, first=int(first)))
         if place[grid.first] >= 0:
-            grids.append(Grid(len(parts.parent) + int(np.searchsorted(behind, first)), grid.rows, grid.columns))
+            grids.append(replace(grid, first=len(parts.parent) + int(np.searchsorted(behind, first))))
     return Fracture(
         faces=faces.vertices,
         face_surface=face_surface,

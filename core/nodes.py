@@ -1,112 +1,451 @@
-"""Nodes: one receiver for the two triangles of a grid cell, and what their own centroids receive by differences.
+"""Nodes: the few receivers that all elements' values follow from.
 
-Form factors vary evenly over a face's width, so the two triangles of a cell share the receiver at the cell's centre;
-each gets its value plus or minus the change towards its centroid. The change is taken from that neighbour, along either
-axis, from which the row differs least: across the line where a shelf meets a wall nothing is mixed. The mean of the two
-stays the cell's own.
+Form factors vary evenly over a plane but for the lines where something touches it, and near openings. So a regular run
+of cells is given receivers on a lattice, dense at its borders and beside lines of contact, wide in between, and its
+elements get their values by cubic interpolation that never reaches across a line of contact. Elements that such a line
+cuts have receivers of their own, one for each part; so have those where interpolation is in doubt, once that shows.
 """
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from . import polygons
 from .fracture import Fracture, Grid
+from .planes import Planes
 
-_TO_CENTROID = 1.0 / 6.0
-"""From a cell's centre to a triangle's centroid, in cells along each axis."""
+_DENSE_SHARE = 0.4
+"""Growth of the lattice's spacing with the distance from the border."""
+
+_MOST_CONTACTS = 200
+"""Lines of contact in one plane beyond which they are left to be found by doubt."""
+
+DOUBT = 0.01
+"""Difference of cubic and linear interpolation, relative to all light, from which elements get their own receivers."""
+
+STEEP = 0.15
+"""Difference between the halves of a cell, relative to all light, from which several receivers serve each."""
+
+_MOST_BREAKS = 12
+_ON_LINE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Weights:
+    """Elements' values as weighted sums of nodes' values: compressed rows.
+
+    Attributes
+    ----------
+    start : (e + 1,) int
+    node : (k,) int
+    weight : (k,) float
+    """
+
+    start: np.ndarray
+    node: np.ndarray
+    weight: np.ndarray
+
+    @classmethod
+    def of(cls, element, node, weight, count: int) -> Weights:
+        """From entries in any order; those of no weight are left out."""
+        keep = np.flatnonzero(weight)
+        order = keep[np.argsort(element[keep], kind="stable")]
+        start = np.concatenate([[0], np.cumsum(np.bincount(element[order], minlength=count))])
+        return cls(start, node[order], weight[order])
+
+    @property
+    def rows(self) -> np.ndarray:
+        """(k,) int: element of each entry."""
+        return np.repeat(np.arange(len(self.start) - 1), np.diff(self.start))
+
+    def apply(self, values: np.ndarray) -> np.ndarray:
+        """(e,) or (e, g) float from values at the nodes ``(m,)`` or ``(m, g)``."""
+        count = len(self.start) - 1
+        if values.ndim == 1:
+            return np.bincount(self.rows, weights=self.weight * values[self.node], minlength=count)
+        return np.stack([self.apply(column) for column in values.T], axis=1)
+
+    def replaced(self, element, node, weight) -> Weights:
+        """With other entries for some elements."""
+        count = len(self.start) - 1
+        mine = np.zeros(count, bool)
+        mine[element] = True
+        rows = self.rows
+        keep = ~mine[rows]
+        return Weights.of(
+            np.concatenate([rows[keep], element]),
+            np.concatenate([self.node[keep], node]),
+            np.concatenate([self.weight[keep], weight]),
+            count,
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """Receivers that stand for the elements.
+    """Receivers, and how elements' values follow from theirs.
 
     Attributes
     ----------
     points : (m, 3) float
-    sheet : (m,) int, as `Fracture.element_sheet`
     element : (m,) int
-        First element that each stands for.
-    grids : list of (int, Grid)
-        First node of each grid of cells; the nodes of cells run like the cells.
+        An element in whose plane each lies.
+    element_sheet : (e,) int
+    weights : Weights
+        Elements' values from the nodes'.
+    around : Weights
+        The nodes next to each element on the lattice; its own where it has such.
+    foretold : list of Weights
+        What the nodes of the lattice would have if their neighbours along one axis, or the other, told it.
     """
 
     points: np.ndarray
-    sheet: np.ndarray
     element: np.ndarray
-    grids: list[tuple[int, Grid]]
+    element_sheet: np.ndarray
+    weights: Weights
+    around: Weights
+    foretold: list[Weights]
+
+    @property
+    def sheet(self) -> np.ndarray:
+        """(m,) int, as `Fracture.element_sheet`."""
+        return self.element_sheet[self.element]
 
     @classmethod
-    def of(cls, fracture: Fracture) -> Nodes:
-        """Cells' centres where elements lie in grids, the elements' own centroids elsewhere."""
-        centroids = fracture.elements.mean(axis=1)
-        alone = np.ones(len(centroids), bool)
-        points, elements, grids, count = [], [], [], 0
-        for grid in fracture.grids:
-            first = np.arange(grid.first, grid.first + 2 * grid.rows * grid.columns, 2)
-            alone[first] = alone[first + 1] = False
-            points.append(0.5 * (centroids[first] + centroids[first + 1]))
-            elements.append(first)
-            grids.append((count, grid))
-            count += len(first)
-        elements.append(np.flatnonzero(alone))
-        points.append(centroids[alone])
-        element = np.concatenate(elements)
-        return cls(np.concatenate(points), fracture.element_sheet[element], element, grids)
+    def of(cls, fracture: Fracture, planes: Planes) -> Nodes:
+        """The lattice of a scene, and own receivers for elements that lie in no run or across a line of contact."""
+        entries, lattices = _Entries(), [_Lattice.of(grid, fracture, planes) for grid in fracture.grids]
+        alone = np.ones(len(fracture.elements), bool)
+        for lattice in lattices:
+            lattice.enter(entries)
+            alone[lattice.grid.elements] = False
+        for lattice in lattices:
+            entries.own(*_pieces(fracture.elements, lattice))
+        single = np.flatnonzero(alone)
+        entries.own(single, fracture.elements[single].mean(axis=1), np.ones(len(single)))
+        return entries.nodes(fracture.element_sheet)
 
-    def steps(self, form_factors: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        """For each grid the neighbours, along rows and along columns, that each cell takes its change from.
+    def on_elements(self, values: np.ndarray) -> np.ndarray:
+        """(e,) float: elements' values, never negative, from values at the nodes ``(m,)`` that are not."""
+        return np.maximum(self.weights.apply(values), 0.0)
 
-        Parameters
-        ----------
-        form_factors : (m, p) float
+    def doubt(self, values: np.ndarray) -> np.ndarray:
+        """(e,) float: how far the nodes around each element are from what their neighbours foretell, over all light.
 
-        Returns
-        -------
-        list of pairs of (rows, columns) int
-            +1 or -1: the next or the last cell; 0 where there is none.
-        """
-        found = []
-        for start, grid in self.grids:
-            cells = form_factors[start : start + grid.rows * grid.columns].reshape(grid.rows, grid.columns, -1)
-            found.append((_flatter_side(cells, 0), _flatter_side(cells, 1)))
-        return found
-
-    def spread(self, values: np.ndarray, steps, out: np.ndarray) -> None:
-        """Fill elements' values ``(e,)`` from nodes' values ``(m,)``.
+        A crease of the values, which no smooth interpolation follows, shows so, while an even curve does not.
 
         Parameters
         ----------
-        values : (m,) float
-            Never negative; no element's value becomes so.
-        steps : list
-            Of `steps`.
-        out : (e,) float
+        values : (m, g) float
+            Several kinds of light, none negative.
         """
-        cells_end = sum(grid.rows * grid.columns for _, grid in self.grids)
-        out[self.element[cells_end:]] = values[cells_end:]
-        for (start, grid), (along_rows, along_columns) in zip(self.grids, steps, strict=True):
-            cells = values[start : start + grid.rows * grid.columns].reshape(grid.rows, grid.columns)
-            change = _TO_CENTROID * (_change(cells, along_rows, 0) - _change(cells, along_columns, 1))
-            change = np.clip(change, -cells, cells)
-            pairs = np.stack([cells + change, cells - change], axis=2)
-            out[grid.first : grid.first + 2 * grid.rows * grid.columns] = pairs.ravel()
+        surprise = np.zeros(len(values))
+        total = values.sum(axis=1)
+        total = np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))
+        for foretold in self.foretold:
+            apart = values[: len(foretold.start) - 1] - foretold.apply(values)
+            apart = np.maximum(np.abs(apart).max(axis=1, initial=0.0), np.abs(apart.sum(axis=1)))
+            surprise[: len(apart)] = np.maximum(surprise[: len(apart)], apart)
+        surprise /= total
+        return np.maximum.reduceat(surprise[self.around.node], self.around.start[:-1])
+
+    def with_own(self, elements: np.ndarray, points: np.ndarray) -> Nodes:
+        """With receivers of their own for some elements ``(k,)``, each given the mean of ``points (k, s, 3)``."""
+        each = points.shape[1]
+        element = np.repeat(elements, each)
+        node, weight = len(self.points) + np.arange(len(element)), np.full(len(element), 1.0 / each)
+        return Nodes(
+            np.concatenate([self.points, points.reshape(-1, 3)]),
+            np.concatenate([self.element, element]),
+            self.element_sheet,
+            self.weights.replaced(element, node, weight),
+            self.around.replaced(element, node, weight),
+            self.foretold,
+        )
 
 
-def _flatter_side(cells: np.ndarray, axis: int) -> np.ndarray:
-    count = cells.shape[axis]
-    sides = np.zeros(cells.shape[:2], np.int64)
-    if count < 2:
-        return sides
-    difference = np.abs(np.diff(cells, axis=axis)).sum(axis=2)
-    ahead = np.concatenate([difference, np.full_like(difference.take([0], axis=axis), np.inf)], axis=axis)
-    behind = np.roll(ahead, 1, axis=axis)
-    return np.where(ahead <= behind, 1, -1)
+def settled(lattice: Nodes, fracture: Fracture, evaluate: Callable[[Nodes, int], np.ndarray]) -> Nodes:
+    """Add nodes to a lattice where interpolation is in doubt, and several for an element where light changes steeply.
+
+    Parameters
+    ----------
+    lattice : Nodes
+    fracture : Fracture
+    evaluate : callable(nodes, first) -> (m, g) float
+        Finds values at the nodes from ``first`` on, and gives those of all: several kinds of light, none negative.
+
+    Returns
+    -------
+    Nodes
+    """
+    nodes, values = lattice, evaluate(lattice, 0)
+    for choose, parts in ((_doubtful, 1), (_steep, 4)):
+        elements = choose(nodes, values, fracture)
+        if len(elements):
+            first = len(nodes.points)
+            nodes = nodes.with_own(elements, _sub_centroids(fracture.elements[elements], parts))
+            values = evaluate(nodes, first)
+    return nodes
 
 
-def _change(cells: np.ndarray, side: np.ndarray, axis: int) -> np.ndarray:
-    """Change per cell along an axis, taken from the chosen side."""
-    place = np.indices(side.shape)
-    place[axis] += side
-    return (cells[tuple(place)] - cells) * side
+def _doubtful(nodes: Nodes, values: np.ndarray, fracture: Fracture) -> np.ndarray:
+    return np.flatnonzero(nodes.doubt(values) > DOUBT)
+
+
+def _steep(nodes: Nodes, values: np.ndarray, fracture: Fracture) -> np.ndarray:
+    """Elements with one receiver of their own that the other half of their cell differs much from."""
+    own, here = np.diff(nodes.weights.start) == 1, nodes.weights.apply(values)
+    total = np.maximum(here.sum(axis=1), 1e-3 * max(float(here.sum(axis=1).mean()), 1e-300))
+    found = []
+    for grid in fracture.grids:
+        pair = here[grid.elements].reshape(-1, 2, here.shape[1])
+        apart = np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0)
+        steep = np.repeat(apart, 2) > STEEP * total[grid.elements]
+        found.append(grid.first + np.flatnonzero(steep & own[grid.elements]))
+    return np.concatenate([np.zeros(0, np.int64), *found])
+
+
+def _sub_centroids(triangles: np.ndarray, parts: int) -> np.ndarray:
+    """(k, parts, 3) float: centroids of triangles, or of the four that halving their edges makes."""
+    middle = triangles.mean(axis=1, keepdims=True)
+    if parts == 1:
+        return middle
+    return np.concatenate([middle, 0.5 * (middle + triangles)], axis=1)
+
+
+class _Entries:
+    """Nodes and weights while they are being collected."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.points: list[np.ndarray] = [np.zeros((0, 3))]
+        self.elements: list[np.ndarray] = [np.zeros(0, np.int64)]
+        none = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
+        self.weights, self.around = [none], [none]
+        self.foretold = [none], [none]
+
+    def add(self, points, element) -> np.ndarray:
+        """Numbers of new nodes."""
+        numbers = self.count + np.arange(len(points))
+        self.count += len(points)
+        self.points.append(points)
+        self.elements.append(element)
+        return numbers
+
+    def own(self, element, points, weight) -> None:
+        """Nodes that serve one element each."""
+        entry = (element, self.add(points, element), weight)
+        self.weights.append(entry)
+        self.around.append(entry)
+
+    def nodes(self, element_sheet) -> Nodes:
+        """All that was entered."""
+        count = len(element_sheet)
+        weights, around = (_joined(entries, count) for entries in (self.weights, self.around))
+        on_lattices = 1 + max(int(entries[-1][0].max(initial=-1)) for entries in self.foretold)
+        foretold = [_joined(entries, on_lattices) for entries in self.foretold]
+        return Nodes(
+            np.concatenate(self.points), np.concatenate(self.elements), element_sheet, weights, around, foretold
+        )
+
+
+def _joined(entries: list, count: int) -> Weights:
+    return Weights.of(*(np.concatenate(part) for part in zip(*entries, strict=True)), count)
+
+
+@dataclass(frozen=True, eq=False)
+class _Lattice:
+    """Nodes of one run of cells.
+
+    Attributes
+    ----------
+    grid : Grid
+    contacts : (c, 2, 2) float
+        Lines along which other surfaces touch the run, in cells.
+    cut : (rows, columns) bool
+        Cells that such a line cuts.
+    lines : pair of lists of (first cell, cells, lines (l,) int)
+        Along either axis the stretches between lines of contact, and the cells in whose middle nodes lie.
+    """
+
+    grid: Grid
+    contacts: np.ndarray
+    cut: np.ndarray
+    stretches: tuple[list, list]
+
+    @classmethod
+    def of(cls, grid: Grid, fracture: Fracture, planes: Planes) -> _Lattice:
+        """Lattice that suits a run and what touches it."""
+        touched = _touched(grid, int(fracture.element_sheet[grid.first]), planes)
+        contacts = touched[~_along_border(touched, (grid.rows, grid.columns))]
+        cut = np.zeros((grid.rows, grid.columns), bool)
+        for line in contacts:
+            cut[_crossed_cells(line, cut.shape)] = True
+        stretches = tuple(_stretches(count, touched[:, :, axis]) for axis, count in enumerate(cut.shape))
+        return cls(grid, contacts, cut, stretches)
+
+    def enter(self, entries: _Entries) -> None:
+        """Add the lattice's nodes, and the weights of all elements that are not cut."""
+        grid = self.grid
+        lines = [np.concatenate([s[2] for s in stretches]) for stretches in self.stretches]
+        rows, columns = np.meshgrid(*lines, indexing="ij")
+        cell = (rows * grid.columns + columns).ravel()
+        points = grid.corner + (rows.ravel()[:, None] + 0.5) * grid.along_rows
+        points = points + (columns.ravel()[:, None] + 0.5) * grid.along_columns
+        numbers = entries.add(points, grid.first + 2 * cell).reshape(rows.shape)
+        self._foretell(numbers, entries)
+        whole = np.flatnonzero(~self.cut.ravel())
+        for half, (across, along) in enumerate(grid.centroids):
+            row, column = np.divmod(whole, grid.columns)
+            for order, out in ((4, entries.weights), (2, entries.around)):
+                line_a, weight_a = _stencils(self.stretches[0], np.arange(grid.rows) + across, order)
+                line_b, weight_b = _stencils(self.stretches[1], np.arange(grid.columns) + along, order)
+                node = numbers[line_a[row][:, :, None], line_b[column][:, None, :]]
+                weight = weight_a[row][:, :, None] * weight_b[column][:, None, :]
+                element = np.broadcast_to((grid.first + 2 * whole + half)[:, None, None], node.shape)
+                out.append((element.ravel(), node.ravel(), weight.ravel()))
+
+    def _foretell(self, numbers: np.ndarray, entries: _Entries) -> None:
+        for axis, out in enumerate(entries.foretold):
+            first = 0
+            for _, _, lines in self.stretches[axis]:
+                mine = np.take(numbers, np.arange(first, first + len(lines)), axis=axis)
+                for line, others, weights in _left_out(lines):
+                    to = np.take(mine, [line], axis=axis)
+                    told = np.take(mine, others, axis=axis)
+                    shares = np.expand_dims(weights, 1 - axis)
+                    out.append(tuple(a.ravel() for a in np.broadcast_arrays(to, told, shares)))
+                first += len(lines)
+
+
+def _left_out(lines: np.ndarray):
+    """For each line the others and the weights that would foretell it; for the outermost, itself."""
+    for k in range(len(lines)):
+        if len(lines) < 5 or k in (0, len(lines) - 1):
+            yield k, np.array([k]), np.ones(1)
+            continue
+        start = min(max(k - 2, 0), len(lines) - 5)
+        others = np.delete(np.arange(start, start + 5), k - start)
+        at = lines[others].astype(float)
+        weights = [np.prod((lines[k] - np.delete(at, j)) / (at[j] - np.delete(at, j))) for j in range(len(others))]
+        yield k, others, np.array(weights)
+
+
+def _stretches(count: int, places: np.ndarray) -> list:
+    """Stretches of cells between the places ``(c, 2)`` of contacts, with the lines that nodes lie on."""
+    inside = np.unique(np.round(places[(places > _ON_LINE) & (places < count - _ON_LINE)], 6))
+    if len(inside) > _MOST_BREAKS:
+        inside = inside[:0]
+    low = np.floor(inside + _ON_LINE).astype(int)
+    cut = low[np.abs(inside - np.rint(inside)) > _ON_LINE]  # in the middle of a cell
+    borders = np.unique(
+        np.concatenate([[0, count], np.rint(inside).astype(int)[np.isin(low, cut, invert=True)], cut, cut + 1])
+    )
+    return [(a, b - a, a + _lines(b - a)) for a, b in itertools.pairwise(borders.tolist())]
+
+
+def _lines(count: int) -> np.ndarray:
+    """Cells of a stretch that lines of nodes run through: all at its ends, fewer and fewer towards its middle."""
+    most = max(3, count // 8)
+    half, middle = [0], (count - 1) / 2
+    while half[-1] + 1 <= middle:
+        half.append(min(half[-1] + min(most, 1 + int(_DENSE_SHARE * half[-1])), int(middle)))
+    lines = np.array(half)
+    return np.unique(np.concatenate([lines, count - 1 - lines]))
+
+
+def _stencils(stretches: list, places: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Lines ``(n, order)`` that serve places in cells ``(n,)``, and Lagrange's weights; unused ones weigh nothing."""
+    numbers, weights = np.zeros((len(places), order), np.int64), np.zeros((len(places), order))
+    first = 0
+    for begin, count, lines in stretches:
+        mine = np.flatnonzero((places >= begin) & (places < begin + count))
+        place, used = places[mine], min(order, len(lines))
+        middle = lines + 0.5
+        start = np.clip(np.searchsorted(middle, place) - used // 2, 0, len(lines) - used)
+        index = start[:, None] + np.arange(used)
+        at = middle[index]
+        for k in range(used):
+            others = np.delete(np.arange(used), k)
+            weights[mine, k] = ((place[:, None] - at[:, others]) / (at[:, [k]] - at[:, others])).prod(axis=1)
+        numbers[mine, :used] = first + index
+        first += len(lines)
+    return numbers, weights
+
+
+def _touched(grid: Grid, sheet: int, planes: Planes) -> np.ndarray:
+    """(c, 2, 2) float: where other surfaces touch or cross a run of cells, in cells along its axes."""
+    fronts = len(planes.sheet_surface)
+    normal, tolerance = planes.sheet_normal[sheet % fronts], 1e-9 * planes.size
+    height = (planes.outlines - grid.corner) @ normal
+    touching = (height.min(axis=1) <= tolerance) & (height.max(axis=1) >= -tolerance)
+    touching &= np.abs(height).max(axis=1) > tolerance
+    found = []
+    for outline, above in zip(planes.outlines[touching], height[touching], strict=True):
+        after, next_above = np.roll(outline, -1, axis=0), np.roll(above, -1)
+        crossing = np.flatnonzero(
+            (np.minimum(above, next_above) < -tolerance) & (np.maximum(above, next_above) > tolerance)
+        )
+        share = (above / np.where(above == next_above, 1.0, above - next_above))[crossing, None]
+        points = np.concatenate(
+            [outline[np.abs(above) <= tolerance], outline[crossing] * (1 - share) + after[crossing] * share]
+        )
+        ends = grid.in_cells(points)
+        far = np.unravel_index(np.argmax(np.linalg.norm(ends[:, None] - ends, axis=2)), (len(ends),) * 2)
+        found.append(_within(ends[list(far)], (grid.rows, grid.columns)))
+    lines = [line for line in found if line is not None]
+    return np.array(lines) if 0 < len(lines) <= _MOST_CONTACTS else np.zeros((0, 2, 2))
+
+
+def _within(line: np.ndarray, shape) -> np.ndarray | None:
+    """Part of a line inside a run or along its border; None where that is a point."""
+    low, high = 0.0, 1.0
+    step = line[1] - line[0]
+    for axis in (0, 1):
+        if abs(step[axis]) < _ON_LINE:
+            if not -_ON_LINE < line[0, axis] < shape[axis] + _ON_LINE:
+                return None
+            continue
+        ends = np.sort((np.array([0.0, shape[axis]]) - line[0, axis]) / step[axis])
+        low, high = max(low, ends[0]), min(high, ends[1])
+    return line[0] + np.outer([low, high], step) if high - low > _ON_LINE else None
+
+
+def _along_border(lines: np.ndarray, shape) -> np.ndarray:
+    """(c,) bool: lines that run along a run's border."""
+    low, high = np.abs(lines) < _ON_LINE, np.abs(lines - np.array(shape)) < _ON_LINE
+    return (low.all(axis=1) | high.all(axis=1)).any(axis=1)
+
+
+def _crossed_cells(line: np.ndarray, shape) -> tuple[np.ndarray, np.ndarray]:
+    samples = max(2, int(8 * np.abs(line[1] - line[0]).max()) + 1)
+    places = line[0] + np.linspace(0.0, 1.0, samples)[:, None] * (line[1] - line[0])
+    inside = (np.abs(places - np.rint(places)) > _ON_LINE).all(axis=1)
+    cells = np.clip(np.floor(places[inside]).astype(int), 0, np.array(shape) - 1)
+    return cells[:, 0], cells[:, 1]
+
+
+def _pieces(elements, lattice: _Lattice):
+    """Cut cells' elements along the lines: element, centroid and share of each piece."""
+    grid = lattice.grid
+    cells = np.flatnonzero(lattice.cut.ravel())
+    owner = grid.first + np.stack([2 * cells, 2 * cells + 1], axis=1).ravel()
+    shapes, areas = elements[owner], polygons.areas(elements[owner])
+    total = np.zeros(len(elements))
+    total[owner] = areas
+    for a, b in lattice.contacts:
+        wall = polygons.cross(grid.normal, grid.place(b) - grid.place(a))
+        wall /= np.linalg.norm(wall)
+        sides = [polygons.clip(shapes, side * wall, side * float(wall @ grid.place(a))) for side in (1.0, -1.0)]
+        width = max(side.shape[1] for side in sides)
+        shapes = np.concatenate(
+            [np.concatenate([s, np.repeat(s[:, -1:], width - s.shape[1], axis=1)], axis=1) for s in sides]
+        )
+        owner, areas = np.tile(owner, 2), polygons.areas(shapes)
+        keep = areas > 1e-6 * total[owner]
+        shapes, owner, areas = shapes[keep], owner[keep], areas[keep]
+    weight = areas / np.maximum(np.bincount(owner, weights=areas, minlength=len(elements))[owner], 1e-300)
+    return owner, polygons.centroids(shapes), weight

@@ -40,6 +40,17 @@ def areas(polygons) -> np.ndarray:
     return 0.5 * np.linalg.norm(newell_normal(polygons), axis=-1)
 
 
+def centroids(polygons) -> np.ndarray:
+    """(m, 3) float: centroids of planar convex polygons ``(m, v, 3)``."""
+    p = np.asarray(polygons, float)
+    if not len(p):
+        return np.zeros((0, 3))
+    fan = cross(p[:, 1:-1] - p[:, :1], p[:, 2:] - p[:, :1])
+    normal = fan.sum(axis=1)
+    share = np.einsum("mvc,mc->mv", fan, normal) / np.maximum(np.einsum("mc,mc->m", normal, normal), 1e-300)[:, None]
+    return p[:, 0] + np.einsum("mv,mvc->mc", share, p[:, 1:-1] + p[:, 2:] - 2 * p[:, :1]) / 3
+
+
 def plane_basis(normal) -> np.ndarray:
     """Two unit vectors that span the plane of a normal, right-handed with it.
 

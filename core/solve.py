@@ -9,12 +9,15 @@ import numpy as np
 from . import radiosity
 from .daylight import Daylight
 from .errors import SceneError
+from .geometry import Geometry
+from .nodes import Nodes, settled
+from .parallel import chunks_of_receivers, run_parallel
 from .penumbra import trace_disc
 from .result import Result
 from .sources import Source, gather_sources
 from .stages import Progress, Recorder
 from .sunlight import NO_SUNLIGHT, Sunlight, trace_sun
-from .transfer import Geometry, Transfer, chunks_of_receivers, run_parallel
+from .transfer import Transfer
 
 EXACT_OUTLINES = 400
 """Scenes of more outlines gather luminous surfaces and sun patches by the globe, like all other light."""
@@ -214,19 +217,32 @@ class _Span:
 
 def _gather_bright(transfer: Transfer, sources: list[Source], deep: np.ndarray, span: _Span) -> np.ndarray:
     """(e,) float: illuminance from bright polygons; by way of many mirrors, from their patches of exitance ``deep``."""
-    geometry, nodes = transfer.geometry, transfer.nodes
-    found = np.zeros(len(nodes.points))
-    tasks = chunks_of_receivers(nodes.points, nodes.sheet, geometry.planes, _SOURCE_ROWS)
+    geometry = transfer.geometry
+    found = np.zeros(0)
+    done = 0.0
 
-    def work(members, checkpoint):
-        normal = geometry.element_normals[nodes.element[members[0]]]
-        found[members] = gather_sources(
-            geometry.outlines, sources, nodes.points[members], normal, transfer.limits, checkpoint
-        )
+    def evaluate(nodes: Nodes, first: int) -> np.ndarray:
+        nonlocal found, done
+        found = np.concatenate([found, np.zeros(len(nodes.points) - first)])
+        members = np.arange(first, len(nodes.points))
+        begun, share = done, 0.6 * (1.0 - done)
+        chunks = chunks_of_receivers(nodes.points[members], nodes.sheet[members], geometry.planes, _SOURCE_ROWS)
 
-    run_parallel(work, tasks, transfer.threads, span.report)
-    found[transfer.deep_rows] += product(transfer.deep_factors, deep)
-    return transfer.on_elements(found)
+        def work(chunk, checkpoint):
+            rows = members[chunk]
+            normal = geometry.element_normals[nodes.element[rows[0]]]
+            found[rows] = gather_sources(
+                geometry.outlines, sources, nodes.points[rows], normal, transfer.limits, checkpoint
+            )
+
+        run_parallel(work, chunks, transfer.threads, lambda part: span.report(begun + share * part))
+        done = begun + share
+        return found[:, None]
+
+    nodes = settled(transfer.lattice, geometry.fracture, evaluate)
+    by_many = np.zeros(len(transfer.nodes.points))
+    by_many[transfer.deep_rows] = product(transfer.deep_factors, deep)
+    return nodes.on_elements(found) + transfer.on_elements(by_many)
 
 
 def gather_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:

@@ -28,7 +28,7 @@ MANY_OUTLINES = 2_500
 _FEW_BEAMS = 2_500
 
 _MOST_IMAGES = 80
-_DEEPEST_IMAGE = 6
+_DEEPEST_IMAGE = 40
 
 _WITHIN = 4e-5
 """Angle from a mirror's edge that centres of parts keep [rad], so that nothing that stands at the edge is before it."""

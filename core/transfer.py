@@ -2,63 +2,21 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import os
-import threading
-from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from .errors import Cancelled, SceneError
-from .fracture import Fracture, fracture, make_patches
-from .gather import Gathered, Targets, gather
+from .errors import SceneError
+from .form_factors import gather_nodes, patch_means
+from .geometry import Geometry, make_geometry
 from .globe import Globe
 from .nodes import Nodes
-from .planes import Planes, find_planes
+from .planes import find_planes
 from .scene import Scene
-from .specular import ChainLimits, GroupSight, Outlines, exact_mirrors
+from .specular import ChainLimits, exact_mirrors
 from .stages import Progress, Recorder, Stage
-
-PATCHES = 2_000
-"""Patches that exitance is resolved in."""
-
-_POLL = 0.1
-"""Seconds between looks whether the user wants to stop."""
-
-_CHUNK_CELLS = 250_000
-"""Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
-
-
-@dataclass(frozen=True, eq=False)
-class Geometry:
-    """A scene made ready: planes, faces, what beams can end on.
-
-    Attributes
-    ----------
-    planes : Planes
-    fracture : Fracture
-    targets : Targets
-    outlines : Outlines
-    surface_materials : list of Material, one per surface
-    element_normals : (e, 3) float
-    element_points : (e, 3) float, relative to the scene's centre
-    """
-
-    planes: Planes
-    fracture: Fracture
-    targets: Targets
-    outlines: Outlines
-    surface_materials: list
-    element_normals: np.ndarray
-    element_points: np.ndarray
-
-    @property
-    def element_surface(self) -> np.ndarray:
-        """(e,) int."""
-        return self.planes.sheet_surface[self.fracture.element_sheet % len(self.planes.sheet_surface)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +27,9 @@ class Transfer:
     ----------
     geometry : Geometry
     nodes : Nodes
-        The receivers, and ``steps``, how elements' values follow from theirs (see `Nodes.steps`).
+        The receivers, and how elements' values follow from theirs.
+    lattice : Nodes
+        The first of them alone, before any were added where interpolation is in doubt.
     form_factors : (m, p) float32
         From each node (receiver) to each patch.
     sky_direct : (m, c) float32
@@ -101,16 +61,14 @@ class Transfer:
     unlit: np.ndarray
     truncated: np.ndarray
     nodes: Nodes
-    steps: list
+    lattice: Nodes
     limits: ChainLimits
     threads: int
     stages: tuple[Stage, ...] = field(default=())
 
     def on_elements(self, values: np.ndarray) -> np.ndarray:
         """Values on the elements ``(e,)`` from values at the nodes ``(m,)``."""
-        out = np.zeros(len(self.geometry.element_points))
-        self.nodes.spread(values, self.steps, out)
-        return out
+        return self.nodes.on_elements(values)
 
     def solve(self, light, *, tolerance: float = 1e-4, cycles: int | None = None, progress: Progress | None = None):
         """Illuminance for one sky and Sun.
@@ -191,7 +149,10 @@ def prepare(
     _check_memory(geometry, memory)
     with recorder.stage("visibility and form factors", 0.02):
         limits = ChainLimits(specular_cutoff, exact_mirrors(geometry.outlines))
-        gathered, patch_factors, nodes, steps = _gather_elements(geometry, limits, threads, recorder)
+        lattice, nodes, gathered = gather_nodes(
+            geometry, limits, threads, lambda done: recorder.report(0.02 + 0.95 * done, "visibility and form factors")
+        )
+        patch_factors = patch_means(geometry, nodes, gathered.form_factors)
     if not geometry.outlines.any_specular:
         recorder.skip("specular chains", "no surface mirrors or transmits regularly")
     recorder.report(1.0, "prepared")
@@ -205,201 +166,19 @@ def prepare(
         if len(specular_rows)
         else np.zeros((0, geometry.targets.columns), np.float32),
         specular_rows=specular_rows,
-        deep_factors=np.array([gathered.deep[row] for row in deep_rows], np.float32).reshape(len(deep_rows), -1),
+        deep_factors=np.stack([gathered.deep[row] for row in deep_rows.tolist()])
+        if len(deep_rows)
+        else np.zeros((0, geometry.targets.patches.count), np.float32),
         deep_rows=deep_rows,
         patch_factors=patch_factors,
         unlit=gathered.unlit,
         truncated=gathered.truncated,
         nodes=nodes,
-        steps=steps,
+        lattice=lattice,
         limits=limits,
         threads=threads,
         stages=tuple(recorder.stages),
     )
-
-
-def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | None) -> Geometry:
-    """Cut planes into faces, elements and patches, and list the outlines with their materials."""
-    surfaces = list(scene.surfaces.values())
-    reflects = np.array([s.material.diffuse_reflectance > 0 for s in surfaces])
-    emits = np.array([s.material.exitance > 0 for s in surfaces])
-    # light that a black luminous surface receives goes nowhere: cut it only where the user says how fine
-    cut = reflects | (emits & (max_area is not None))
-    two_sided = np.array([s.two_sided for s in surfaces])
-    cuts = fracture(planes, cut, reflects, two_sided, max_area)
-    points = cuts.elements.mean(axis=1)
-    fronts = len(planes.sheet_surface)
-    surface = planes.sheet_surface[cuts.element_sheet % fronts]
-    normals = (
-        planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
-    )
-    active = (reflects | emits)[surface]
-    patches = make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, PATCHES)
-    outline_surface = planes.sheet_surface[planes.outline_sheet]
-    outline_normals = planes.sheet_normal[planes.outline_sheet]
-    outlines = Outlines(
-        vertices=planes.outlines,
-        normals=outline_normals,
-        offsets=np.einsum("oc,oc->o", outline_normals, planes.outlines[:, 0]),
-        materials=[surfaces[k].material for k in outline_surface],
-        two_sided=two_sided[outline_surface],
-        tolerance=max(1e-9 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
-    )
-    return Geometry(
-        planes, cuts, Targets.of(planes, patches, globe), outlines, [s.material for s in surfaces], normals, points
-    )
-
-
-def chunks_of_receivers(points, sheet, planes: Planes, most: int) -> list[np.ndarray]:
-    """Receivers of one plane that lie near each other, in chunks.
-
-    Parameters
-    ----------
-    points : (m, 3) float
-    sheet : (m,) int, plus the number of sheets for backs
-    planes : Planes
-    most : int
-        Receivers in a chunk.
-
-    Returns
-    -------
-    list of (k,) int arrays
-    """
-    fronts = len(planes.sheet_surface)
-    order = np.argsort(sheet, kind="stable")
-    bounds = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0, [True])))
-    chunks = []
-    for a, b in itertools.pairwise(bounds):
-        members = order[a:b]
-        if len(members) > most:
-            place = points[members] @ planes.sheet_axes[sheet[members[0]] % fronts].T
-            extent = np.maximum(np.ptp(place, axis=0), 1e-300)
-            blocks = len(members) / most
-            cell = math.sqrt(extent.prod() / blocks) if extent.min() > 1e-9 * extent.max() else extent.max() / blocks
-            block = np.floor((place - place.min(axis=0)) / cell)
-            members = members[np.lexsort((place[:, 1], block[:, 1], block[:, 0]))]
-        chunks += [members[k : k + most] for k in range(0, len(members), most)]
-    return chunks
-
-
-def sight_of(geometry: Geometry, limits: ChainLimits, normal, offset: float) -> GroupSight:
-    """What receivers with this normal, in the plane ``normal · x = offset``, can see."""
-    return GroupSight(geometry.outlines, geometry.targets.globe.hemisphere(normal), offset, limits)
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    form_factors: np.ndarray
-    sky_direct: np.ndarray
-    sky_specular: np.ndarray
-    specular_rows: np.ndarray
-    unlit: np.ndarray
-    truncated: np.ndarray
-    deep: dict[int, np.ndarray]
-
-    @classmethod
-    def empty(cls, count: int, geometry: Geometry) -> _Rows:
-        targets = geometry.targets
-        specular = (count, targets.columns) if geometry.outlines.any_specular else (0, targets.columns)
-        return cls(
-            np.empty((count, targets.patches.count), np.float32),
-            np.empty((count, targets.columns), np.float32),
-            np.zeros(specular, np.float32),
-            np.zeros(count, bool),
-            np.zeros(count, np.float32),
-            np.zeros(count, np.float32),
-            {},
-        )
-
-    def put(self, members: np.ndarray, rows: Gathered) -> None:
-        self.form_factors[members] = rows.patches
-        self.sky_direct[members] = rows.sky_direct
-        self.unlit[members] = rows.unlit
-        self.truncated[members] = rows.truncated
-        if rows.sky_specular is not None:
-            self.sky_specular[members] = rows.sky_specular
-            self.specular_rows[members] = True
-        if rows.deep is not None:
-            lit = np.flatnonzero(rows.deep.any(axis=1))
-            self.deep.update(zip(members[lit].tolist(), rows.deep[lit], strict=True))
-
-
-def _gather_elements(geometry: Geometry, limits: ChainLimits, threads: int, recorder: Recorder):
-    nodes = Nodes.of(geometry.fracture)
-    rows = _Rows.empty(len(nodes.points), geometry)
-    # so many that receivers times beams stay in cache
-    most = max(8, _CHUNK_CELLS // max(geometry.targets.globe.count // 2, 1))
-    chunks = chunks_of_receivers(nodes.points, nodes.sheet, geometry.planes, most)
-    sights: dict[int, GroupSight] = {}
-    for members in chunks:
-        sheet = int(nodes.sheet[members[0]])
-        if sheet not in sights:
-            normal = geometry.element_normals[nodes.element[members[0]]]
-            sights[sheet] = sight_of(geometry, limits, normal, float(normal @ nodes.points[members[0]]))
-
-    def work(members: np.ndarray, checkpoint) -> None:
-        sight = sights[int(nodes.sheet[members[0]])]
-        rows.put(members, gather(sight, nodes.points[members], geometry.targets, checkpoint))
-
-    def report(done: float) -> None:
-        recorder.report(0.02 + 0.94 * done, "visibility and form factors")
-
-    run_parallel(work, chunks, threads, report)
-    steps = nodes.steps(rows.form_factors if rows.form_factors.shape[1] else rows.sky_direct)
-    return rows, _patch_means(geometry, nodes, rows.form_factors), nodes, steps
-
-
-def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[float], None]) -> None:
-    """Run ``work(task, checkpoint)`` for each task on several threads.
-
-    ``report`` is called with the share of tasks done, and often enough for a user to stop a long one. Where it raises,
-    tasks under way stop at their next checkpoint and the exception goes on to the caller.
-    """
-    stop = threading.Event()
-
-    def checkpoint() -> None:
-        if stop.is_set():
-            raise Cancelled("Cancelled")
-
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        pending = {pool.submit(work, task, checkpoint) for task in tasks}
-        try:
-            done = 0
-            while pending:
-                finished, pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    future.result()
-                done += len(finished)
-                report(done / len(tasks))
-        except BaseException:
-            stop.set()
-            for future in pending:
-                future.cancel()
-            raise
-
-
-def _patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> np.ndarray:
-    """(p, p) float: means of the nodes' form factors over each patch."""
-    patch = geometry.targets.patches.of_element[nodes.element]
-    area = geometry.fracture.element_areas[nodes.element]
-    count = geometry.targets.patches.count
-    means = np.zeros((count, count))
-    mine = np.flatnonzero(patch >= 0)
-    order = mine[np.argsort(patch[mine], kind="stable")]
-    if not len(order):
-        return means
-    starts = np.flatnonzero(np.concatenate(([True], np.diff(patch[order]) > 0)))
-    step = max(1, int(2e7) // max(count, 1))
-    bounds = np.append(starts, len(order))
-    first = 0
-    while first < count:
-        last = int(np.searchsorted(bounds, bounds[first] + step, side="right")) - 1
-        last = min(max(last, first + 1), count)
-        rows = order[bounds[first] : bounds[last]]
-        weighted = form_factors[rows] * area[rows, None]
-        means[first:last] = np.add.reduceat(weighted, starts[first:last] - bounds[first], axis=0)
-        first = last
-    return means / np.bincount(patch[mine], weights=area[mine], minlength=count)[:, None]
 
 
 def _checked_options(scene, max_area, specular_cutoff, threads, memory):

@@ -109,9 +109,9 @@ def look(
             seen[:, columns] = np.where(whole, np.int32(o), seen[:, columns])
             possible[o] = columns
     if found:
-        candidates = tuple(np.concatenate(x, axis=-1) for x in zip(*found, strict=True))
+        row, beam, obstacle, sine = (np.concatenate(x, axis=-1) for x in zip(*found, strict=True))
         eye = Eye(points, planes, heights, np.asarray(normal, float), past, partial)
-        candidates = Candidates.of(*candidates, planes.astype(np.float32), heights, beams)
+        candidates = Candidates.of(row, beam, obstacle, sine, planes.astype(np.float32), heights, beams)
         for o in settle_whole(seen, nearest, start, candidates, eye, beams, obstacles):
             possible.setdefault(int(o), within[int(o)])
         view = settle_parts(seen, nearest, possible, candidates, eye, beams, obstacles)

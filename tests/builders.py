@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import luzespecular as luz
-from luzespecular import fracture, transfer
+from luzespecular import fracture, geometry
 
 BLACK = luz.Material()
 DARK = luz.Daylight()
@@ -45,7 +45,7 @@ def prepare_coarse(scene, elements=200, patches=100, **options):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fracture, "FEWEST_ELEMENTS", elements)
         patch.setattr(fracture, "ELEMENTS_PER_PLAIN_SURFACE", max(8, elements // 10))
-        patch.setattr(transfer, "PATCHES", patches)
+        patch.setattr(geometry, "PATCHES", patches)
         return luz.prepare(scene, **{"bands": 24, "max_area": math.inf, **options})
 
 

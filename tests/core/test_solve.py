@@ -218,7 +218,6 @@ def test_solving_reports_its_way(unlit):
     assert {s for _, s in reports} == {"sky", "sun", "interreflection", "solved"}
 
 
-@pytest.mark.xfail(strict=True, reason="lamps and sun patches are gathered one after the other, each from 0.1 to 0.7")
 def test_progress_never_goes_back(transfer):
     assert (np.diff([f for f, _ in reports_of(transfer)]) >= 0).all()
 

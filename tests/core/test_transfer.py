@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import luzespecular as luz
-from luzespecular.transfer import chunks_of_receivers, run_parallel
+from luzespecular.parallel import chunks_of_receivers, run_parallel
 
 WHITE = luz.Material(diffuse_reflectance=0.5)
 MIRROR = luz.Material(specular_reflectance=0.8)

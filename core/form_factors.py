@@ -1,0 +1,187 @@
+"""Form factors of a scene: rows for all nodes, more of these where interpolation between them is in doubt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from .gather import Gathered, gather
+from .geometry import Geometry, sight_of
+from .nodes import Nodes, settled
+from .parallel import chunks_of_receivers, run_parallel
+from .specular import ChainLimits, GroupSight
+
+_CHUNK_CELLS = 250_000
+"""Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
+
+_GROUPS = 32
+_OF_REFLECTED = 0.2
+"""About how bright surfaces are beside the sky that they show with."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Form factors of nodes, as in `Transfer`; ``specular_rows`` says which nodes see the sky in mirrors.
+
+    ``deep`` holds, for few nodes or none, what comes by way of many mirrors.
+    """
+
+    form_factors: np.ndarray
+    sky_direct: np.ndarray
+    sky_specular: np.ndarray
+    specular_rows: np.ndarray
+    unlit: np.ndarray
+    truncated: np.ndarray
+    deep: dict[int, np.ndarray]
+
+    @classmethod
+    def empty(cls, count: int, geometry: Geometry) -> Rows:
+        """Room for rows."""
+        targets = geometry.targets
+        specular = (count, targets.columns) if geometry.outlines.any_specular else (0, targets.columns)
+        return cls(
+            np.empty((count, targets.patches.count), np.float32),
+            np.empty((count, targets.columns), np.float32),
+            np.zeros(specular, np.float32),
+            np.zeros(count, bool),
+            np.zeros(count, np.float32),
+            np.zeros(count, np.float32),
+            {},
+        )
+
+    def widened(self, count: int, geometry: Geometry) -> Rows:
+        """With room for more rows."""
+        if not len(self.unlit):
+            return Rows.empty(count, geometry)
+        wide = Rows.empty(count, geometry)
+        wide.deep.update(self.deep)
+        for name in (f.name for f in fields(self) if f.name != "deep"):
+            mine = getattr(self, name)
+            getattr(wide, name)[: len(mine)] = mine
+        return wide
+
+    def put(self, members: np.ndarray, rows: Gathered) -> None:
+        """Enter the rows of some nodes."""
+        self.form_factors[members] = rows.patches
+        self.sky_direct[members] = rows.sky_direct
+        self.unlit[members] = rows.unlit
+        self.truncated[members] = rows.truncated
+        if rows.sky_specular is not None:
+            self.sky_specular[members] = rows.sky_specular
+            self.specular_rows[members] = True
+        if rows.deep is not None:
+            lit = np.flatnonzero(rows.deep.any(axis=1))
+            self.deep.update(zip(members[lit].tolist(), rows.deep[lit], strict=True))
+
+
+def gather_nodes(
+    geometry: Geometry, limits: ChainLimits, threads: int, report: Callable[[float], None]
+) -> tuple[Nodes, Nodes, Rows]:
+    """Form factors of all nodes.
+
+    Parameters
+    ----------
+    geometry : Geometry
+    limits : ChainLimits
+    threads : int
+    report : callable(fraction)
+
+    Returns
+    -------
+    lattice, nodes : Nodes
+        Those that every scene begins with; all.
+    rows : Rows
+    """
+    lattice = Nodes.of(geometry.fracture, geometry.planes)
+    found = Rows.empty(0, geometry)
+    sights: dict[int, GroupSight] = {}
+    done = 0.0
+
+    def evaluate(nodes: Nodes, first: int) -> np.ndarray:
+        nonlocal found, done
+        found = found.widened(len(nodes.points), geometry)
+        members = np.arange(first, len(nodes.points))
+        begun, share = done, (1.0 - done) * (0.6 if first == 0 else 0.7)
+        _gather_some(
+            geometry, nodes, members, found, sights, limits, threads, lambda part: report(begun + share * part)
+        )
+        done = begun + share
+        return kinds_of_light(geometry, found)
+
+    nodes = settled(lattice, geometry.fracture, evaluate)
+    report(1.0)
+    return lattice, nodes, found
+
+
+def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, limits, threads: int, report) -> None:
+    """Fill the rows of some nodes."""
+    # so many that receivers times beams stay in cache
+    most = max(8, _CHUNK_CELLS // max(geometry.targets.globe.count // 2, 1))
+    chunks = [
+        members[c] for c in chunks_of_receivers(nodes.points[members], nodes.sheet[members], geometry.planes, most)
+    ]
+    for chunk in chunks:
+        sheet = int(nodes.sheet[chunk[0]])
+        if sheet not in sights:
+            normal = geometry.element_normals[nodes.element[chunk[0]]]
+            sights[sheet] = sight_of(geometry, limits, normal, float(normal @ nodes.points[chunk[0]]))
+
+    def work(chunk: np.ndarray, checkpoint) -> None:
+        sight = sights[int(nodes.sheet[chunk[0]])]
+        rows.put(chunk, gather(sight, nodes.points[chunk], geometry.targets, checkpoint))
+
+    run_parallel(work, chunks, threads, report)
+
+
+def kinds_of_light(geometry: Geometry, rows: Rows) -> np.ndarray:
+    """(m, g) float: what nodes get from four sides of the sky and from surfaces, about as bright as these will be.
+
+    The sides blend into each other: between sharp ones light would seem to change from node to node where it does not.
+    """
+    targets, planes = geometry.targets, geometry.planes
+    east, north = targets.globe.directions[: targets.sky_parcels, :2].T
+    sides = np.zeros((targets.columns, 4), np.float32)
+    sides[:-1] = 0.25 * (1 + np.stack([east, -east, north, -north], axis=1))
+    sides[-1] = 0.25
+    sky = rows.sky_direct @ sides
+    if rows.specular_rows.any():
+        sky += rows.sky_specular @ sides
+    patches, cuts = targets.patches.count, geometry.fracture
+    sheet = np.zeros(patches, np.int64)
+    mine = targets.patches.of_element >= 0
+    sheet[targets.patches.of_element[mine]] = cuts.element_sheet[mine]
+    groups = np.zeros((patches, _GROUPS), np.float32)
+    groups[np.arange(patches), sheet * _GROUPS // (2 * len(planes.sheet_surface))] = 1.0
+    reflected = rows.form_factors @ groups
+    share = _OF_REFLECTED if sky.sum() > 1e-3 * max(float(reflected.sum()), 1e-300) else 1.0
+    return np.concatenate([sky, share * reflected], axis=1).astype(float)
+
+
+def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> np.ndarray:
+    """(p, p) float: means of the elements' form factors over each patch."""
+    patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
+    count = geometry.targets.patches.count
+    element = nodes.weights.rows
+    mine = patch[element] >= 0
+    share = nodes.weights.weight[mine] * area[element[mine]]
+    key = patch[element[mine]] * len(nodes.points) + nodes.weights.node[mine]
+    pairs, place = np.unique(key, return_inverse=True)
+    weight = np.bincount(place.reshape(-1), weights=share, minlength=len(pairs))
+    to, node = np.divmod(pairs, len(nodes.points))
+    total = np.bincount(patch[patch >= 0], weights=area[patch >= 0], minlength=count)
+    weight /= total[to]
+    means = np.zeros((count, count))
+    bounds = np.searchsorted(to, np.arange(count + 1))
+    step = max(1, int(4e6) // max(count, 1))
+    first = 0
+    while first < count:
+        last = max(first + 1, int(np.searchsorted(bounds, bounds[first] + step, side="right")) - 1)
+        mine = slice(bounds[first], bounds[last])
+        used, column = np.unique(node[mine], return_inverse=True)
+        shares = np.zeros((last - first, len(used)), np.float32)
+        shares[to[mine] - first, column.reshape(-1)] = weight[mine]
+        means[first:last] = shares @ form_factors[used]
+        first = last
+    return means

@@ -1,0 +1,83 @@
+"""Geometry: a scene made ready, with everything that looking and gathering needs to know of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .fracture import Fracture, fracture, make_patches
+from .gather import Targets
+from .globe import Globe
+from .planes import Planes
+from .scene import Scene
+from .specular import ChainLimits, GroupSight, Outlines
+
+PATCHES = 2_000
+"""Patches that exitance is resolved in."""
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """A scene made ready: planes, faces, what beams can end on.
+
+    Attributes
+    ----------
+    planes : Planes
+    fracture : Fracture
+    targets : Targets
+    outlines : Outlines
+    surface_materials : list of Material, one per surface
+    element_normals : (e, 3) float
+    element_points : (e, 3) float, relative to the scene's centre
+    """
+
+    planes: Planes
+    fracture: Fracture
+    targets: Targets
+    outlines: Outlines
+    surface_materials: list
+    element_normals: np.ndarray
+    element_points: np.ndarray
+
+    @property
+    def element_surface(self) -> np.ndarray:
+        """(e,) int."""
+        return self.planes.sheet_surface[self.fracture.element_sheet % len(self.planes.sheet_surface)]
+
+
+def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | None) -> Geometry:
+    """Cut planes into faces, elements and patches, and list the outlines with their materials."""
+    surfaces = list(scene.surfaces.values())
+    reflects = np.array([s.material.diffuse_reflectance > 0 for s in surfaces])
+    emits = np.array([s.material.exitance > 0 for s in surfaces])
+    # light that a black luminous surface receives goes nowhere: cut it only where the user says how fine
+    cut = reflects | (emits & (max_area is not None))
+    two_sided = np.array([s.two_sided for s in surfaces])
+    cuts = fracture(planes, cut, reflects, two_sided, max_area)
+    points = cuts.elements.mean(axis=1)
+    fronts = len(planes.sheet_surface)
+    surface = planes.sheet_surface[cuts.element_sheet % fronts]
+    normals = (
+        planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
+    )
+    active = (reflects | emits)[surface]
+    patches = make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, PATCHES)
+    outline_surface = planes.sheet_surface[planes.outline_sheet]
+    outline_normals = planes.sheet_normal[planes.outline_sheet]
+    outlines = Outlines(
+        vertices=planes.outlines,
+        normals=outline_normals,
+        offsets=np.einsum("oc,oc->o", outline_normals, planes.outlines[:, 0]),
+        materials=[surfaces[k].material for k in outline_surface],
+        two_sided=two_sided[outline_surface],
+        tolerance=max(1e-9 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
+    )
+    return Geometry(
+        planes, cuts, Targets.of(planes, patches, globe), outlines, [s.material for s in surfaces], normals, points
+    )
+
+
+def sight_of(geometry: Geometry, limits: ChainLimits, normal, offset: float) -> GroupSight:
+    """What receivers with this normal, in the plane ``normal · x = offset``, can see."""
+    return GroupSight(geometry.outlines, geometry.targets.globe.hemisphere(normal), offset, limits)

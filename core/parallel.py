@@ -1,0 +1,78 @@
+"""Parallel work: receivers in chunks, chunks on several threads, stopped where the user wants to."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import threading
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+
+import numpy as np
+
+from .errors import Cancelled
+from .planes import Planes
+
+_POLL = 0.1
+"""Seconds between looks whether the user wants to stop."""
+
+
+def chunks_of_receivers(points, sheet, planes: Planes, most: int) -> list[np.ndarray]:
+    """Receivers of one plane that lie near each other, in chunks.
+
+    Parameters
+    ----------
+    points : (m, 3) float
+    sheet : (m,) int, plus the number of sheets for backs
+    planes : Planes
+    most : int
+        Receivers in a chunk.
+
+    Returns
+    -------
+    list of (k,) int arrays
+    """
+    fronts = len(planes.sheet_surface)
+    order = np.argsort(sheet, kind="stable")
+    bounds = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0, [True])))
+    chunks = []
+    for a, b in itertools.pairwise(bounds):
+        members = order[a:b]
+        if len(members) > most:
+            place = points[members] @ planes.sheet_axes[sheet[members[0]] % fronts].T
+            extent = np.maximum(np.ptp(place, axis=0), 1e-300)
+            blocks = len(members) / most
+            cell = math.sqrt(extent.prod() / blocks) if extent.min() > 1e-9 * extent.max() else extent.max() / blocks
+            block = np.floor((place - place.min(axis=0)) / cell)
+            members = members[np.lexsort((place[:, 1], block[:, 1], block[:, 0]))]
+        chunks += [members[k : k + most] for k in range(0, len(members), most)]
+    return chunks
+
+
+def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[float], None]) -> None:
+    """Run ``work(task, checkpoint)`` for each task on several threads.
+
+    ``report`` is called with the share of tasks done, and often enough for a user to stop a long one. Where it raises,
+    tasks under way stop at their next checkpoint and the exception goes on to the caller.
+    """
+    stop = threading.Event()
+
+    def checkpoint() -> None:
+        if stop.is_set():
+            raise Cancelled("Cancelled")
+
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        pending = {pool.submit(work, task, checkpoint) for task in tasks}
+        try:
+            done = 0
+            while pending:
+                finished, pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    future.result()
+                done += len(finished)
+                report(done / len(tasks))
+        except BaseException:
+            stop.set()
+            for future in pending:
+                future.cancel()
+            raise
