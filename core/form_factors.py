@@ -163,6 +163,9 @@ def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> n
     """(p, p) float: means of the elements' form factors over each patch."""
     patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
     count = geometry.targets.patches.count
+    means = np.zeros((count, count))
+    if not count:
+        return means
     element = nodes.weights.rows
     mine = patch[element] >= 0
     share = nodes.weights.weight[mine] * area[element[mine]]
@@ -172,7 +175,6 @@ def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> n
     to, node = np.divmod(pairs, len(nodes.points))
     total = np.bincount(patch[patch >= 0], weights=area[patch >= 0], minlength=count)
     weight /= total[to]
-    means = np.zeros((count, count))
     bounds = np.searchsorted(to, np.arange(count + 1))
     step = max(1, int(4e6) // max(count, 1))
     first = 0
