@@ -94,7 +94,7 @@ def gather_nodes(
         Those that every scene begins with; all.
     rows : Rows
     """
-    lattice = Nodes.of(geometry.fracture, geometry.planes)
+    lattice = Nodes.of(geometry.fracture, geometry.lattices)
     found = Rows.empty(0, geometry)
     sights: dict[int, GroupSight] = {}
     done = 0.0

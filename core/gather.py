@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .fracture import Patches
 from .globe import Globe, Hemisphere
+from .patches import Patches
 from .planes import Planes
 from .specular import GroupSight, Sighting
 from .visibility import OPEN

@@ -6,15 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .fracture import Fracture, fracture, make_patches
+from .fracture import Fracture, fracture
 from .gather import Targets
 from .globe import Globe
+from .layout import Layout
+from .patches import make_patches
 from .planes import Planes
 from .scene import Scene
 from .specular import ChainLimits, GroupSight, Outlines
 
-PATCHES = 2_000
-"""Patches that exitance is resolved in."""
+PATCHES = 1_000
+"""Patches that exitance is resolved in, about; runs of cells get more where light is uneven."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +27,7 @@ class Geometry:
     ----------
     planes : Planes
     fracture : Fracture
+    lattices : list of Layout
     targets : Targets
     outlines : Outlines
     surface_materials : list of Material, one per surface
@@ -34,6 +37,7 @@ class Geometry:
 
     planes: Planes
     fracture: Fracture
+    lattices: list[Layout]
     targets: Targets
     outlines: Outlines
     surface_materials: list
@@ -62,7 +66,8 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
         planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
     )
     active = (reflects | emits)[surface]
-    patches = make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, PATCHES)
+    lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes) for grid in cuts.grids]
+    patches = make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, PATCHES, lattices)
     outline_surface = planes.sheet_surface[planes.outline_sheet]
     outline_normals = planes.sheet_normal[planes.outline_sheet]
     outlines = Outlines(
@@ -74,7 +79,14 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
         tolerance=max(1e-9 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
     )
     return Geometry(
-        planes, cuts, Targets.of(planes, patches, globe), outlines, [s.material for s in surfaces], normals, points
+        planes,
+        cuts,
+        lattices,
+        Targets.of(planes, patches, globe),
+        outlines,
+        [s.material for s in surfaces],
+        normals,
+        points,
     )
 
 

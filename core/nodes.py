@@ -8,30 +8,23 @@ cuts have receivers of their own, one for each part; so have those where interpo
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import polygons
-from .fracture import Fracture, Grid
-from .planes import Planes
+from .fracture import Fracture
+from .layout import Layout
 
 _DENSE_SHARE = 0.4
 """Growth of the lattice's spacing with the distance from the border."""
-
-_MOST_CONTACTS = 200
-"""Lines of contact in one plane beyond which they are left to be found by doubt."""
 
 DOUBT = 0.01
 """Difference of cubic and linear interpolation, relative to all light, from which elements get their own receivers."""
 
 STEEP = 0.15
 """Difference between the halves of a cell, relative to all light, from which several receivers serve each."""
-
-_MOST_BREAKS = 12
-_ON_LINE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,12 +108,12 @@ class Nodes:
         return self.element_sheet[self.element]
 
     @classmethod
-    def of(cls, fracture: Fracture, planes: Planes) -> Nodes:
+    def of(cls, fracture: Fracture, lattices: list[Layout]) -> Nodes:
         """The lattice of a scene, and own receivers for elements that lie in no run or across a line of contact."""
-        entries, lattices = _Entries(), [_Lattice.of(grid, fracture, planes) for grid in fracture.grids]
+        entries = _Entries()
         alone = np.ones(len(fracture.elements), bool)
         for lattice in lattices:
-            lattice.enter(entries)
+            _enter(lattice, entries)
             alone[lattice.grid.elements] = False
         for lattice in lattices:
             entries.own(*_pieces(fracture.elements, lattice))
@@ -256,69 +249,41 @@ def _joined(entries: list, count: int) -> Weights:
     return Weights.of(*(np.concatenate(part) for part in zip(*entries, strict=True)), count)
 
 
-@dataclass(frozen=True, eq=False)
-class _Lattice:
-    """Nodes of one run of cells.
+def _enter(lattice: Layout, entries: _Entries) -> None:
+    """Add the lattice's nodes, and the weights of all elements that are not cut."""
+    grid = lattice.grid
+    stretches = [[(a, n, a + _lines(n)) for a, n in along] for along in lattice.stretches]
+    lines = [np.concatenate([part[2] for part in along]) for along in stretches]
+    rows, columns = np.meshgrid(*lines, indexing="ij")
+    cell = (rows * grid.columns + columns).ravel()
+    points = grid.corner + (rows.ravel()[:, None] + 0.5) * grid.along_rows
+    points = points + (columns.ravel()[:, None] + 0.5) * grid.along_columns
+    numbers = entries.add(points, grid.first + 2 * cell).reshape(rows.shape)
+    _foretell(stretches, numbers, entries)
+    whole = np.flatnonzero(~lattice.cut.ravel())
+    for half, (across, along) in enumerate(grid.centroids):
+        row, column = np.divmod(whole, grid.columns)
+        for order, out in ((4, entries.weights), (2, entries.around)):
+            line_a, weight_a = _stencils(stretches[0], np.arange(grid.rows) + across, order)
+            line_b, weight_b = _stencils(stretches[1], np.arange(grid.columns) + along, order)
+            node = numbers[line_a[row][:, :, None], line_b[column][:, None, :]]
+            weight = weight_a[row][:, :, None] * weight_b[column][:, None, :]
+            element = np.broadcast_to((grid.first + 2 * whole + half)[:, None, None], node.shape)
+            out.append((element.ravel(), node.ravel(), weight.ravel()))
 
-    Attributes
-    ----------
-    grid : Grid
-    contacts : (c, 2, 2) float
-        Lines along which other surfaces touch the run, in cells.
-    cut : (rows, columns) bool
-        Cells that such a line cuts.
-    lines : pair of lists of (first cell, cells, lines (l,) int)
-        Along either axis the stretches between lines of contact, and the cells in whose middle nodes lie.
-    """
 
-    grid: Grid
-    contacts: np.ndarray
-    cut: np.ndarray
-    stretches: tuple[list, list]
-
-    @classmethod
-    def of(cls, grid: Grid, fracture: Fracture, planes: Planes) -> _Lattice:
-        """Lattice that suits a run and what touches it."""
-        touched = _touched(grid, int(fracture.element_sheet[grid.first]), planes)
-        contacts = touched[~_along_border(touched, (grid.rows, grid.columns))]
-        cut = np.zeros((grid.rows, grid.columns), bool)
-        for line in contacts:
-            cut[_crossed_cells(line, cut.shape)] = True
-        stretches = tuple(_stretches(count, touched[:, :, axis]) for axis, count in enumerate(cut.shape))
-        return cls(grid, contacts, cut, stretches)
-
-    def enter(self, entries: _Entries) -> None:
-        """Add the lattice's nodes, and the weights of all elements that are not cut."""
-        grid = self.grid
-        lines = [np.concatenate([s[2] for s in stretches]) for stretches in self.stretches]
-        rows, columns = np.meshgrid(*lines, indexing="ij")
-        cell = (rows * grid.columns + columns).ravel()
-        points = grid.corner + (rows.ravel()[:, None] + 0.5) * grid.along_rows
-        points = points + (columns.ravel()[:, None] + 0.5) * grid.along_columns
-        numbers = entries.add(points, grid.first + 2 * cell).reshape(rows.shape)
-        self._foretell(numbers, entries)
-        whole = np.flatnonzero(~self.cut.ravel())
-        for half, (across, along) in enumerate(grid.centroids):
-            row, column = np.divmod(whole, grid.columns)
-            for order, out in ((4, entries.weights), (2, entries.around)):
-                line_a, weight_a = _stencils(self.stretches[0], np.arange(grid.rows) + across, order)
-                line_b, weight_b = _stencils(self.stretches[1], np.arange(grid.columns) + along, order)
-                node = numbers[line_a[row][:, :, None], line_b[column][:, None, :]]
-                weight = weight_a[row][:, :, None] * weight_b[column][:, None, :]
-                element = np.broadcast_to((grid.first + 2 * whole + half)[:, None, None], node.shape)
-                out.append((element.ravel(), node.ravel(), weight.ravel()))
-
-    def _foretell(self, numbers: np.ndarray, entries: _Entries) -> None:
-        for axis, out in enumerate(entries.foretold):
-            first = 0
-            for _, _, lines in self.stretches[axis]:
-                mine = np.take(numbers, np.arange(first, first + len(lines)), axis=axis)
-                for line, others, weights in _left_out(lines):
-                    to = np.take(mine, [line], axis=axis)
-                    told = np.take(mine, others, axis=axis)
-                    shares = np.expand_dims(weights, 1 - axis)
-                    out.append(tuple(a.ravel() for a in np.broadcast_arrays(to, told, shares)))
-                first += len(lines)
+def _foretell(stretches, numbers: np.ndarray, entries: _Entries) -> None:
+    """What each node of a lattice would have by its neighbours along either axis."""
+    for axis, out in enumerate(entries.foretold):
+        first = 0
+        for _, _, lines in stretches[axis]:
+            mine = np.take(numbers, np.arange(first, first + len(lines)), axis=axis)
+            for line, others, weights in _left_out(lines):
+                to = np.take(mine, [line], axis=axis)
+                told = np.take(mine, others, axis=axis)
+                shares = np.expand_dims(weights, 1 - axis)
+                out.append(tuple(a.ravel() for a in np.broadcast_arrays(to, told, shares)))
+            first += len(lines)
 
 
 def _left_out(lines: np.ndarray):
@@ -332,19 +297,6 @@ def _left_out(lines: np.ndarray):
         at = lines[others].astype(float)
         weights = [np.prod((lines[k] - np.delete(at, j)) / (at[j] - np.delete(at, j))) for j in range(len(others))]
         yield k, others, np.array(weights)
-
-
-def _stretches(count: int, places: np.ndarray) -> list:
-    """Stretches of cells between the places ``(c, 2)`` of contacts, with the lines that nodes lie on."""
-    inside = np.unique(np.round(places[(places > _ON_LINE) & (places < count - _ON_LINE)], 6))
-    if len(inside) > _MOST_BREAKS:
-        inside = inside[:0]
-    low = np.floor(inside + _ON_LINE).astype(int)
-    cut = low[np.abs(inside - np.rint(inside)) > _ON_LINE]  # in the middle of a cell
-    borders = np.unique(
-        np.concatenate([[0, count], np.rint(inside).astype(int)[np.isin(low, cut, invert=True)], cut, cut + 1])
-    )
-    return [(a, b - a, a + _lines(b - a)) for a, b in itertools.pairwise(borders.tolist())]
 
 
 def _lines(count: int) -> np.ndarray:
@@ -376,59 +328,7 @@ def _stencils(stretches: list, places: np.ndarray, order: int) -> tuple[np.ndarr
     return numbers, weights
 
 
-def _touched(grid: Grid, sheet: int, planes: Planes) -> np.ndarray:
-    """(c, 2, 2) float: where other surfaces touch or cross a run of cells, in cells along its axes."""
-    fronts = len(planes.sheet_surface)
-    normal, tolerance = planes.sheet_normal[sheet % fronts], 1e-9 * planes.size
-    height = (planes.outlines - grid.corner) @ normal
-    touching = (height.min(axis=1) <= tolerance) & (height.max(axis=1) >= -tolerance)
-    touching &= np.abs(height).max(axis=1) > tolerance
-    found = []
-    for outline, above in zip(planes.outlines[touching], height[touching], strict=True):
-        after, next_above = np.roll(outline, -1, axis=0), np.roll(above, -1)
-        crossing = np.flatnonzero(
-            (np.minimum(above, next_above) < -tolerance) & (np.maximum(above, next_above) > tolerance)
-        )
-        share = (above / np.where(above == next_above, 1.0, above - next_above))[crossing, None]
-        points = np.concatenate(
-            [outline[np.abs(above) <= tolerance], outline[crossing] * (1 - share) + after[crossing] * share]
-        )
-        ends = grid.in_cells(points)
-        far = np.unravel_index(np.argmax(np.linalg.norm(ends[:, None] - ends, axis=2)), (len(ends),) * 2)
-        found.append(_within(ends[list(far)], (grid.rows, grid.columns)))
-    lines = [line for line in found if line is not None]
-    return np.array(lines) if 0 < len(lines) <= _MOST_CONTACTS else np.zeros((0, 2, 2))
-
-
-def _within(line: np.ndarray, shape) -> np.ndarray | None:
-    """Part of a line inside a run or along its border; None where that is a point."""
-    low, high = 0.0, 1.0
-    step = line[1] - line[0]
-    for axis in (0, 1):
-        if abs(step[axis]) < _ON_LINE:
-            if not -_ON_LINE < line[0, axis] < shape[axis] + _ON_LINE:
-                return None
-            continue
-        ends = np.sort((np.array([0.0, shape[axis]]) - line[0, axis]) / step[axis])
-        low, high = max(low, ends[0]), min(high, ends[1])
-    return line[0] + np.outer([low, high], step) if high - low > _ON_LINE else None
-
-
-def _along_border(lines: np.ndarray, shape) -> np.ndarray:
-    """(c,) bool: lines that run along a run's border."""
-    low, high = np.abs(lines) < _ON_LINE, np.abs(lines - np.array(shape)) < _ON_LINE
-    return (low.all(axis=1) | high.all(axis=1)).any(axis=1)
-
-
-def _crossed_cells(line: np.ndarray, shape) -> tuple[np.ndarray, np.ndarray]:
-    samples = max(2, int(8 * np.abs(line[1] - line[0]).max()) + 1)
-    places = line[0] + np.linspace(0.0, 1.0, samples)[:, None] * (line[1] - line[0])
-    inside = (np.abs(places - np.rint(places)) > _ON_LINE).all(axis=1)
-    cells = np.clip(np.floor(places[inside]).astype(int), 0, np.array(shape) - 1)
-    return cells[:, 0], cells[:, 1]
-
-
-def _pieces(elements, lattice: _Lattice):
+def _pieces(elements, lattice: Layout):
     """Cut cells' elements along the lines: element, centroid and share of each piece."""
     grid = lattice.grid
     cells = np.flatnonzero(lattice.cut.ravel())

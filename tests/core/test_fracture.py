@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 import luzespecular as luz
 from luzespecular import fracture as fracture_room
 from luzespecular import polygons
-from luzespecular.fracture import Triangles, cut_pieces, fracture, halve, make_patches
+from luzespecular.fracture import Triangles, cut_pieces, fracture, halve
+from luzespecular.patches import make_patches
 from luzespecular.planes import find_planes
 
 WHITE = luz.Material(diffuse_reflectance=0.5)
@@ -167,7 +168,7 @@ def patches_of(scene, target):
     cuts, planes = cuts_of(scene, 0.01), find_planes(scene)
     diffuse = np.array([s.material.diffuse_reflectance > 0 for s in scene.surfaces.values()])
     active = diffuse[planes.sheet_surface[cuts.element_sheet]]
-    return cuts, make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, target)
+    return cuts, make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, target, [])
 
 
 def test_patches_share_out_the_diffuse_surfaces():
@@ -206,7 +207,7 @@ def small_sheets(vertices, faces, target):
     scene.add("mesh", vertices, WHITE, faces=faces)
     cuts, planes = cuts_of(scene, math.inf), find_planes(scene)
     every = np.ones(len(cuts.elements), bool)
-    return make_patches(planes, cuts.elements, cuts.element_sheet, every, cuts.element_areas, target)
+    return make_patches(planes, cuts.elements, cuts.element_sheet, every, cuts.element_areas, target, [])
 
 
 def test_curved_meshes_share_patches():

@@ -1,0 +1,219 @@
+"""Patches: groups of elements that share one exitance, laid out so that beams find them by place."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .layout import Layout
+from .planes import Planes
+
+_WIDEST = 1.5
+"""Side of the widest patch of a run, over that of a patch of average area."""
+
+_GROWTH = 0.4
+"""Growth of patches with the distance from the end of a stretch."""
+
+
+@dataclass(frozen=True, eq=False)
+class Patches:
+    """Groups of elements that share one exitance, with a grid per sheet to find them by.
+
+    The backs of two-sided sheets follow the fronts: sheet number plus the number of sheets.
+
+    Attributes
+    ----------
+    count : int
+    of_element : (e,) int
+        Patch of each element, -1 where it has none (its surface neither emits nor reflects diffusely).
+    grid_origin, grid_scale : (2s, 2) float
+        Cell of an in-plane point: floor((axes · x − origin) · scale).
+    grid_shape : (2s, 2) int
+    grid_base : (2s,) int
+        Where the sheet's cells begin in ``grid``; -1 for a sheet without patches.
+    grid : (cells,) int
+    """
+
+    count: int
+    of_element: np.ndarray
+    grid_origin: np.ndarray
+    grid_scale: np.ndarray
+    grid_shape: np.ndarray
+    grid_base: np.ndarray
+    grid: np.ndarray
+
+
+def make_patches(
+    planes: Planes, elements, element_sheet, element_active, areas, target: int, lattices: list[Layout]
+) -> Patches:
+    """Gather elements into patches of about equal area.
+
+    Sheets that are one run of cells get patches as fine as their lattice says, other large ones an even grid. Small
+    ones (curved meshes) are gathered by place, facing and surface.
+
+    Parameters
+    ----------
+    planes : Planes
+    elements : (e, 3, 3) float
+    element_sheet : (e,) int
+    element_active : (e,) bool
+        Whether the element can emit diffuse light.
+    areas : (e,) float [m²]
+    target : int
+        About how many patches to make.
+    lattices : list of Layout
+
+    Returns
+    -------
+    Patches
+    """
+    fronts = len(planes.sheet_surface)
+    sheets = 2 * fronts
+    centroids = elements.mean(axis=1)
+    of_element = np.full(len(centroids), -1, np.int64)
+    origin, scale = np.zeros((sheets, 2)), np.zeros((sheets, 2))
+    shape, base = np.ones((sheets, 2), np.int64), np.full(sheets, -1, np.int64)
+    active = np.flatnonzero(element_active)
+    if not len(active):
+        return Patches(0, of_element, origin, scale, shape, base, np.zeros(0, np.int64))
+    patch_area = areas[active].sum() / target
+    order = active[np.argsort(element_sheet[active], kind="stable")]
+    used, starts = np.unique(element_sheet[order], return_index=True)
+    sheet_area = np.add.reduceat(areas[order], starts)
+    bounds = np.append(starts, len(order))
+    runs = {int(element_sheet[lattice.grid.first]): lattice for lattice in lattices}
+    grid, cells, count = [], 0, 0
+    small = []
+    for k, sheet in enumerate(used):
+        members = order[bounds[k] : bounds[k + 1]]
+        if sheet_area[k] <= 1.5 * patch_area or len(members) == 1:
+            small.append(k)
+            continue
+        place = centroids[members] @ planes.sheet_axes[sheet % fronts].T
+        # the outline's extent, not the centroids', so that cells are of even size
+        outline = (
+            planes.outlines[planes.outline_sheet == sheet % fronts].reshape(-1, 3) @ planes.sheet_axes[sheet % fronts].T
+        )
+        low, extent = outline.min(axis=0), np.maximum(np.ptp(outline, axis=0), 1e-300)
+        if sheet in runs and len(members) == 2 * runs[sheet].cut.size:
+            graded = _graded(runs[sheet], planes.sheet_axes[sheet % fronts], low, extent, patch_area)
+            if graded is not None:
+                patch, table = graded
+                shape[sheet], base[sheet] = table.shape, cells
+                origin[sheet], scale[sheet] = low, shape[sheet] / extent
+                of_element[runs[sheet].grid.elements] = count + np.repeat(patch.ravel(), 2)
+                grid.append(count + table.ravel())
+                cells, count = cells + table.size, count + int(patch.max()) + 1
+                continue
+        corners = (elements[members] @ planes.sheet_axes[sheet % fronts].T - low) / extent
+        n = np.array([_cells_along(corners[:, :, k], extent[k] / math.sqrt(patch_area)) for k in (0, 1)])
+        while n.prod() > 4 * len(members):
+            n = np.maximum(1, n // 2)
+        origin[sheet], scale[sheet], shape[sheet], base[sheet] = low, n / extent, n, cells
+        cell = np.clip(np.floor((place - low) * scale[sheet]).astype(np.int64), 0, n - 1)
+        filled, patch = np.unique(cell[:, 0] * n[1] + cell[:, 1], return_inverse=True)
+        of_element[members] = count + patch.reshape(-1)
+        grid.append(count + _fill_cells(filled, n))
+        cells += int(n.prod())
+        count += len(filled)
+    if small:
+        count = _gather_small(
+            planes,
+            centroids,
+            [(used[k], order[bounds[k] : bounds[k + 1]]) for k in small],
+            sheet_area[small].sum(),
+            patch_area,
+            of_element,
+            count,
+        )
+        for k in small:
+            sheet = used[k]
+            base[sheet] = cells
+            grid.append(of_element[order[bounds[k] : bounds[k] + 1]])
+            cells += 1
+    return Patches(count, of_element, origin, scale, shape, base, np.concatenate(grid))
+
+
+def _graded(lattice: Layout, axes, low, extent, patch_area: float) -> tuple[np.ndarray, np.ndarray] | None:
+    """Patches of a run's cells ``(rows, columns)``, and the same along the sheet's axes; None where those lie askew."""
+    grid = lattice.grid
+    along = np.abs(axes @ np.stack([grid.along_rows, grid.along_columns], axis=1))
+    if np.minimum(along[0], along[1]).max() > 1e-6 * along.max():
+        return None
+    groups = [
+        _groups(stretches, max(1, round(_WIDEST * math.sqrt(patch_area) / float(np.linalg.norm(step)))))
+        for stretches, step in zip(lattice.stretches, (grid.along_rows, grid.along_columns), strict=True)
+    ]
+    patch = groups[0][:, None] * (int(groups[1].max()) + 1) + groups[1][None, :]
+    rows, columns = np.indices(patch.shape)
+    centre = grid.corner + (rows[:, :, None] + 0.5) * grid.along_rows + (columns[:, :, None] + 0.5) * grid.along_columns
+    shape = np.array(patch.shape if along[0, 0] > along[1, 0] else patch.shape[::-1])
+    place = np.clip(((centre @ axes.T - low) * (shape / extent)).astype(int), 0, shape - 1)
+    table = np.zeros(shape, np.int64)
+    table[place[:, :, 0], place[:, :, 1]] = patch
+    return patch, table
+
+
+def _groups(stretches: list, most: int) -> np.ndarray:
+    """(cells,) int: group of each cell along one axis: narrow at the ends of stretches, ``most`` cells in between."""
+    sizes = []
+    for _, count in stretches:
+        half: list[int] = []
+        left = count
+        while left > 0:
+            size = min(most, 1 + int(_GROWTH * sum(half)))
+            if 2 * size >= left:
+                middle = [left] if left <= size else [left // 2, left - left // 2]
+                sizes += [*half, *middle, *reversed(half)]
+                break
+            half.append(size)
+            left -= 2 * size
+    return np.repeat(np.arange(len(sizes)), sizes)
+
+
+def _cells_along(places: np.ndarray, wanted: float) -> int:
+    """Number of cells along one axis, near ``wanted``: where possible one whose limits no element straddles.
+
+    A patch's mean is then that of just the area that beams find it by.
+    """
+    target = max(1, round(wanted))
+    low, high = places.min(axis=1), places.max(axis=1)
+    for n in sorted(range(max(1, target // 2), 2 * target + 1), key=lambda n: abs(math.log(n / max(wanted, 1e-9)))):
+        if (np.floor(low * n + 1e-6) >= np.floor(high * n - 1e-6)).all():
+            return n
+    return target
+
+
+def _gather_small(planes, centroids, groups, small_area, patch_area, of_element, count) -> int:
+    sheet_of = np.array([sheet for sheet, _ in groups])
+    middle = np.array([centroids[members].mean(axis=0) for _, members in groups])
+    fronts = len(planes.sheet_surface)
+    back = sheet_of >= fronts
+    normal = planes.sheet_normal[sheet_of % fronts] * np.where(back, -1.0, 1.0)[:, None]
+    facing = np.argmax(np.abs(normal), axis=1) * 2 + (
+        np.take_along_axis(normal, np.argmax(np.abs(normal), axis=1)[:, None], 1)[:, 0] > 0
+    )
+    fair = 8 + 4 * round(small_area / patch_area)
+    side = math.sqrt(patch_area)
+    while True:
+        key = np.c_[planes.sheet_surface[sheet_of % fronts], back, facing, np.floor(middle / side)]
+        distinct, patch = np.unique(key, axis=0, return_inverse=True)
+        one_cell = len(np.unique(key[:, 3:], axis=0)) == 1
+        if len(distinct) <= fair or one_cell:
+            break
+        side *= 2  # leaves far apart share a patch
+    patch = patch.reshape(-1)
+    for number, (_, members) in zip(patch, groups, strict=True):
+        of_element[members] = count + number
+    return count + int(patch.max()) + 1
+
+
+def _fill_cells(filled: np.ndarray, n: np.ndarray) -> np.ndarray:
+    """(cells,) int: for each cell of a grid the nearest filled one's number."""
+    if len(filled) == n.prod():
+        return np.arange(len(filled))
+    every = np.stack(np.unravel_index(np.arange(n.prod()), n), axis=1)
+    distance = ((every[:, None] - every[filled][None]) ** 2).sum(axis=2)
+    return np.argmin(distance, axis=1)
