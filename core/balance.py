@@ -33,6 +33,9 @@ class Balance:
         bright as the mean [lm].
     defect : float
         What fails to close the balance, relative to ``entering``.
+    adjusted : float
+        What failed to close it before the small errors of means over areas were made up for (see `Conservation`),
+        relative to ``entering``: how well the scene is resolved.
     """
 
     entering: float
@@ -41,6 +44,7 @@ class Balance:
     escaped: float
     truncated: float
     defect: float
+    adjusted: float
 
 
 def lumen_balance(result: Result) -> Balance:
@@ -73,6 +77,7 @@ def lumen_balance(result: Result) -> Balance:
             0.0,
             result.sunlight.truncated,
             0.0,
+            0.0,
         )
     defect = (entering - absorbed.sum() - escaped - unlit - truncated) / entering
     return Balance(
@@ -82,6 +87,7 @@ def lumen_balance(result: Result) -> Balance:
         escaped=escaped,
         truncated=truncated + result.sunlight.truncated + _cut_sky(result),
         defect=float(defect),
+        adjusted=result.field.adjusted / entering,
     )
 
 

@@ -17,6 +17,7 @@ _CHUNK_CELLS = 250_000
 """Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
 
 _GROUPS = 32
+_ROWS = 256
 _OF_REFLECTED = 0.2
 """About how bright surfaces are beside the sky that they show with."""
 
@@ -160,10 +161,10 @@ def kinds_of_light(geometry: Geometry, rows: Rows) -> np.ndarray:
 
 
 def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> np.ndarray:
-    """(p, p) float: means of the elements' form factors over each patch."""
+    """(p, k) float: means of the elements' form factors, from the nodes' ``(m, k)``, over each patch."""
     patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
     count = geometry.targets.patches.count
-    means = np.zeros((count, count))
+    means = np.zeros((count, form_factors.shape[1]))
     if not count:
         return means
     element = nodes.weights.rows
@@ -187,3 +188,51 @@ def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> n
         means[first:last] = shares @ form_factors[used]
         first = last
     return means
+
+
+@dataclass(frozen=True, eq=False)
+class Conservation:
+    """How light that is sent out and seen to stay is made to arrive to the last lumen.
+
+    Means over faces and patches err a little, mostly where planes meet, and so would the sum of what arrives. What is
+    missing is spread over all receivers as evenly lit surroundings would light them: an even field stays as it is.
+
+    Attributes
+    ----------
+    kept : (e,) float
+        Area times the share of light that counts as landed: all but what mirrors and panes pass on [m²].
+    lost : (e,) float
+        Share of what an element sends out that escapes, falls on dark sides or is cut off.
+    spread : (m,) float
+        Illuminance of the nodes for one lumen more [1/m²].
+    missing : (p,) float
+        Lumens that are missing for one lm/m² of each patch's exitance [m²].
+    """
+
+    kept: np.ndarray
+    lost: np.ndarray
+    spread: np.ndarray
+    missing: np.ndarray
+
+    @classmethod
+    def of(cls, geometry: Geometry, nodes: Nodes, rows: Rows) -> Conservation:
+        """Compare what patches send out with what nodes receive."""
+        patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
+        count = geometry.targets.patches.count
+        landing = np.array([m.hemispherical_absorptance + m.diffuse_reflectance for m in geometry.surface_materials])
+        kept = area * landing[geometry.element_surface]
+        lost = rows.sky_direct.sum(axis=1, dtype=float) + rows.unlit + rows.truncated
+        if rows.specular_rows.any():
+            lost += rows.sky_specular.sum(axis=1, dtype=float)
+        lost = nodes.weights.apply(lost)
+        weights = nodes.weights
+        share = np.bincount(weights.node, weights=weights.weight * kept[weights.rows], minlength=len(nodes.points))
+        landed, seen = np.zeros(count), np.zeros(len(share))
+        for first in range(0, len(share), _ROWS):
+            some = rows.form_factors[first : first + _ROWS].astype(float)
+            landed += share[first : first + _ROWS] @ some
+            seen[first : first + _ROWS] = some.sum(axis=1)
+        mine = patch >= 0
+        sent = np.bincount(patch[mine], weights=(area * (1 - lost))[mine], minlength=count)
+        total = float(share @ seen)
+        return cls(kept, lost, seen / total if total > 0 else seen, sent - landed)

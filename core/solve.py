@@ -45,6 +45,8 @@ class Field:
     deep_emitted, deep_reflected : (p,) float
         Exitance of those luminous surfaces and of the sun patches, as the globe gathers it by way of more mirrors than
         ``sources`` are followed through [lm/m²].
+    adjusted : float
+        What means over areas were out by before the light was made to add up, without regard to sign [lm].
     """
 
     components: dict[str, np.ndarray]
@@ -54,6 +56,7 @@ class Field:
     emitters: int
     deep_emitted: np.ndarray
     deep_reflected: np.ndarray
+    adjusted: float
 
 
 def solve_light(
@@ -99,7 +102,7 @@ def solve_light(
     if geometry.targets.patches.count == 0:
         recorder.skip("interreflection", "no surface reflects or emits diffusely")
         components["interreflected"] = np.zeros(count)
-        field = Field(components, np.zeros(0), np.zeros(0), [], 0, np.zeros(0), np.zeros(0))
+        field = Field(components, np.zeros(0), np.zeros(0), [], 0, np.zeros(0), np.zeros(0), 0.0)
     else:
         with recorder.stage("interreflection", 0.1):
             field = interreflect(transfer, components, sunlight, reflectance, emitted, tolerance, cycles, recorder)
@@ -142,23 +145,30 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     geometry = transfer.geometry
     emitters, sunny = bright_few(geometry, sunlight)
     sun = components["sun_direct"] + components["sun_specular"]
-    none = np.zeros(len(emitted))
+    none, adjusted = np.zeros(len(emitted)), np.zeros(4)
     by_globe, deep_emitted, deep_reflected = none, none, none
     if len(geometry.outlines.vertices) > EXACT_OUTLINES:
         by_globe, emitters, sunny = emitted, [], []
         components["emitted"] = transfer.on_elements(gather_patches(transfer, emitted))
     elif emitters:
         deep_emitted = emitted
-        components["emitted"] = _gather_bright(transfer, emitters, deep_emitted, _Span(recorder, 0.1, 0.4))
-    smooth = components["sky_direct"] + components["sky_specular"] + components["emitted"]
+        given = np.array([m.exitance for m in geometry.surface_materials])[geometry.element_surface]
+        found = _gather_bright(transfer, emitters, deep_emitted, _Span(recorder, 0.1, 0.4))
+        components["emitted"], adjusted[0] = brought_home(transfer, found, given)
+    sky = components["sky_direct"] + components["sky_specular"]
+    smooth = sky + components["emitted"]
+    share = np.array([m.diffuse_reflectance for m in geometry.surface_materials])[geometry.element_surface]
     smooth = smooth + (sunlight.blur if sunny else sun)
     if cycles == 0 or not reflectance.any():
         components["interreflected"] = np.zeros(len(sun))
-        return Field(components, none, by_globe, emitters, len(emitters), deep_emitted, none)
+        return Field(
+            components, none, by_globe, emitters, len(emitters), deep_emitted, none, float(np.abs(adjusted).sum())
+        )
     first = np.zeros(len(sun))
     if sunny:
         deep_reflected = reflectance * patch_means(geometry, sun - sunlight.blur)
         first = _gather_bright(transfer, sunny, deep_reflected, _Span(recorder, 0.4, 0.8))
+        first, adjusted[1] = brought_home(transfer, first, share * (sun - sunlight.blur))
     smooth, once = patch_means(geometry, smooth), patch_means(geometry, first)
 
     def checkpoint() -> None:
@@ -169,9 +179,22 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     else:
         settled = _cycles_after_first(transfer.patch_factors, reflectance, smooth, once, cycles, checkpoint)
     exitance = reflectance * settled
-    components["interreflected"] = first + transfer.on_elements(gather_patches(transfer, exitance))
+    again = first + transfer.on_elements(gather_patches(transfer, exitance))
+    adjusted[2] = transfer.conservation.missing @ exitance
+    if cycles is None:
+        again, adjusted[3] = settled_home(transfer, again, sun + components["emitted"] + sky, share)
+    components["interreflected"] = again
     sources = [*emitters, *sunny]
-    return Field(components, exitance, by_globe, sources, len(emitters), deep_emitted, deep_reflected)
+    return Field(
+        components,
+        exitance,
+        by_globe,
+        sources,
+        len(emitters),
+        deep_emitted,
+        deep_reflected,
+        float(np.abs(adjusted).sum()),
+    )
 
 
 def _cycles_after_first(factors, reflectance, smooth, first, cycles: int, checkpoint) -> np.ndarray:
@@ -247,7 +270,33 @@ def _gather_bright(transfer: Transfer, sources: list[Source], deep: np.ndarray, 
 
 def gather_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:
     """(m,) float: illuminance of the nodes from patches of exitance ``(p,)`` [lx]."""
-    return product(transfer.form_factors, exitance)
+    conservation = transfer.conservation
+    return product(transfer.form_factors, exitance) + conservation.spread * (conservation.missing @ exitance)
+
+
+def brought_home(transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray) -> tuple[np.ndarray, float]:
+    """Illuminance that elements of exitance ``(e,)`` cause, made to sum to what of their light stays; lumens added."""
+    conservation = transfer.conservation
+    sent = float((transfer.geometry.fracture.element_areas * exitance) @ (1 - conservation.lost))
+    missing = sent - float(conservation.kept @ illuminance)
+    return illuminance + missing * _spread(transfer, illuminance), missing
+
+
+def settled_home(
+    transfer: Transfer, interreflected: np.ndarray, initial: np.ndarray, share: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Interreflected light as `brought_home`, when all of it is reflected again by ``share`` (e,)."""
+    conservation, area = transfer.conservation, transfer.geometry.fracture.element_areas
+    stays = area * share * (1 - conservation.lost)
+    spread = _spread(transfer, interreflected)
+    missing = float(stays @ (initial + interreflected)) - float(conservation.kept @ interreflected)
+    return interreflected + missing / max(1 - float(stays @ spread), 1e-12) * spread, missing
+
+
+def _spread(transfer: Transfer, illuminance: np.ndarray) -> np.ndarray:
+    """(e,) float: illuminance for one lumen more, only where there is some already."""
+    spread = np.where(illuminance > 0, transfer.on_elements(transfer.conservation.spread), 0.0)
+    return spread / max(float(transfer.conservation.kept @ spread), 1e-300)
 
 
 def product(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:

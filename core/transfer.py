@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .errors import SceneError
-from .form_factors import gather_nodes, patch_means
+from .form_factors import Conservation, gather_nodes, patch_means
 from .geometry import Geometry, make_geometry
 from .globe import Globe
 from .nodes import Nodes
@@ -30,6 +30,7 @@ class Transfer:
         The receivers, and how elements' values follow from theirs.
     lattice : Nodes
         The first of them alone, before any were added where interpolation is in doubt.
+    conservation : Conservation
     form_factors : (m, p) float32
         From each node (receiver) to each patch.
     sky_direct : (m, c) float32
@@ -62,6 +63,7 @@ class Transfer:
     truncated: np.ndarray
     nodes: Nodes
     lattice: Nodes
+    conservation: Conservation
     limits: ChainLimits
     threads: int
     stages: tuple[Stage, ...] = field(default=())
@@ -152,7 +154,10 @@ def prepare(
         lattice, nodes, gathered = gather_nodes(
             geometry, limits, threads, lambda done: recorder.report(0.02 + 0.95 * done, "visibility and form factors")
         )
+        conservation = Conservation.of(geometry, nodes, gathered)
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
+        spread = patch_means(geometry, nodes, conservation.spread[:, None])
+        patch_factors += spread * conservation.missing
     if not geometry.outlines.any_specular:
         recorder.skip("specular chains", "no surface mirrors or transmits regularly")
     recorder.report(1.0, "prepared")
@@ -175,6 +180,7 @@ def prepare(
         truncated=gathered.truncated,
         nodes=nodes,
         lattice=lattice,
+        conservation=conservation,
         limits=limits,
         threads=threads,
         stages=tuple(recorder.stages),
