@@ -175,7 +175,7 @@ def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> n
     weight = np.bincount(place.reshape(-1), weights=share, minlength=len(pairs))
     to, node = np.divmod(pairs, len(nodes.points))
     total = np.bincount(patch[patch >= 0], weights=area[patch >= 0], minlength=count)
-    weight /= total[to]
+    weight = weight / total[to]
     bounds = np.searchsorted(to, np.arange(count + 1))
     step = max(1, int(4e6) // max(count, 1))
     first = 0

@@ -49,7 +49,7 @@ class Layout:
         cut = np.zeros((grid.rows, grid.columns), bool)
         for line in contacts:
             cut[_crossed_cells(line, cut.shape)] = True
-        stretches = tuple(_stretches(count, touched[:, :, axis]) for axis, count in enumerate(cut.shape))
+        stretches = _stretches(grid.rows, touched[:, :, 0]), _stretches(grid.columns, touched[:, :, 1])
         return cls(grid, contacts, cut, stretches)
 
 

@@ -246,7 +246,8 @@ class _Entries:
 
 
 def _joined(entries: list, count: int) -> Weights:
-    return Weights.of(*(np.concatenate(part) for part in zip(*entries, strict=True)), count)
+    element, node, weight = (np.concatenate(part) for part in zip(*entries, strict=True))
+    return Weights.of(element, node, weight, count)
 
 
 def _enter(lattice: Layout, entries: _Entries) -> None:
@@ -282,7 +283,8 @@ def _foretell(stretches, numbers: np.ndarray, entries: _Entries) -> None:
                 to = np.take(mine, [line], axis=axis)
                 told = np.take(mine, others, axis=axis)
                 shares = np.expand_dims(weights, 1 - axis)
-                out.append(tuple(a.ravel() for a in np.broadcast_arrays(to, told, shares)))
+                one, other, share = np.broadcast_arrays(to, told, shares)
+                out.append((one.ravel(), other.ravel(), share.ravel()))
             first += len(lines)
 
 

@@ -89,7 +89,7 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
     more = np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 3))
     if len(groups):
         grazing, cuts = _cuts(crossed.take(mine), candidates, eye, beams, obstacles)
-        cuts = _with_windows(cuts, eye, *(x[groups] for x in head), beams)
+        cuts = _with_windows(cuts, eye, head[0][groups], head[1][groups], beams)
         limits = _limits(eye, head[0][groups], background[groups], obstacles)
         exact = overlaps.settle(cuts, beams, limits, little[groups])
         share[mine], towards[mine] = exact.share[: len(mine)], exact.towards[: len(mine)]

@@ -197,7 +197,7 @@ def trace_disc(
         sun.normal_illuminance,
         direct,
         specular,
-        sum(sharp.on_elements(elements, element_sheet, outline_sheet)),
+        np.add(*sharp.on_elements(elements, element_sheet, outline_sheet)),
     )
 
 

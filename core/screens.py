@@ -8,7 +8,7 @@ corners of a face, with the margin that the disc's radius asks for, holds all ov
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -44,6 +44,12 @@ class Screens:
     transmittance: np.ndarray
     axes: np.ndarray
     tolerance: float
+    true: np.ndarray = field(init=False)
+    forms: np.ndarray = field(init=False)
+    normals: np.ndarray = field(init=False)
+    offsets: np.ndarray = field(init=False)
+    towards: np.ndarray = field(init=False)
+    edge_on: np.ndarray = field(init=False)
 
     def __post_init__(self):
         after = np.roll(self.vertices, -1, axis=1)

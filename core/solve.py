@@ -113,6 +113,7 @@ def solve_light(
 def follow_sun(geometry: Geometry, sun, cutoff: float, checkpoint) -> tuple[Sunlight, tuple[np.ndarray, np.ndarray]]:
     """All that the Sun lights, and what elements get straight and by mirrors, both (e,) float [lx]."""
     cuts, outlines, outline_sheet = geometry.fracture, geometry.outlines, geometry.planes.outline_sheet
+    sunlight: Sunlight
     if sun.disc:
         sunlight = trace_disc(outlines, sun, cuts.elements, cuts.element_sheet, outline_sheet, cutoff, checkpoint)
     else:

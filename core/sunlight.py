@@ -94,19 +94,21 @@ class Sunlight:
         direct, specular : (e,) float [lx]
         """
         sheets = int(outline_sheet.max()) + 1
-        return tuple(
-            light_elements(self.patches, elements, element_sheet, outline_sheet, sheets, specular)
-            for specular in (False, True)
+        direct, specular = (
+            light_elements(self.patches, elements, element_sheet, outline_sheet, sheets, by_mirrors)
+            for by_mirrors in (False, True)
         )
+        return direct, specular
 
     @property
-    def blur(self):
+    def blur(self) -> np.ndarray | float:
         """(e,) float, or 0: what elements get besides the patches; adds up to about nothing [lx]."""
         return 0.0
 
     def at(self, outlines: Outlines, points, normals) -> np.ndarray:
         """(m,) float: sunlight at free points, straight and by mirrors [lx]."""
-        return sum(light_points(outlines, self.beams, points, normals))
+        direct, specular = light_points(outlines, self.beams, points, normals)
+        return direct + specular
 
 
 _ROUNDING = 1e-11
