@@ -234,5 +234,36 @@ class Conservation:
             seen[first : first + _ROWS] = some.sum(axis=1)
         mine = patch >= 0
         sent = np.bincount(patch[mine], weights=(area * (1 - lost))[mine], minlength=count)
+        areas = np.bincount(patch[mine], weights=area[mine], minlength=count)
+        missing = (sent - landed) * trusted(1 - sent / np.maximum(areas, 1e-300))
         total = float(share @ seen)
-        return cls(kept, lost, seen / total if total > 0 else seen, sent - landed)
+        return cls(kept, lost, seen / total if total > 0 else seen, missing)
+
+
+def trusted(lost):
+    """Weight of what is sent and stays against what arrives: both err by about the same share of what they measure.
+
+    Where almost all escapes, the little that stays is known better from where it arrives.
+    """
+    stays = np.clip(1 - lost, 0, 1)
+    return stays**2 / (stays**2 + (1 - stays) ** 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Exchange:
+    """Light from patch to patch: ``exchange @ exitance``.
+
+    Attributes
+    ----------
+    factors : (p, p) float
+        Form factors from each patch (receiver) to each patch (emitter).
+    spread, missing : (p,) float
+        What evens out their errors: see `Conservation`.
+    """
+
+    factors: np.ndarray
+    spread: np.ndarray
+    missing: np.ndarray
+
+    def __matmul__(self, exitance: np.ndarray) -> np.ndarray:
+        return self.factors @ exitance + self.spread * (self.missing @ exitance)

@@ -23,6 +23,8 @@ _DENSE_SHARE = 0.4
 DOUBT = 0.01
 """Difference of cubic and linear interpolation, relative to all light, from which elements get their own receivers."""
 
+_CURVE = 0.1
+
 STEEP = 0.15
 """Difference between the halves of a cell, relative to all light, from which several receivers serve each."""
 
@@ -144,6 +146,19 @@ class Nodes:
             surprise[: len(apart)] = np.maximum(surprise[: len(apart)], apart)
         surprise /= total
         return np.maximum.reduceat(surprise[self.around.node], self.around.start[:-1])
+
+    def unsure(self, values: np.ndarray, fracture: Fracture) -> np.ndarray:
+        """(e,) float: what interpolation, or one receiver for an area, leaves open, over all light; see `doubt`."""
+        open_ = self.doubt(values)
+        here, own = self.weights.apply(values), np.diff(self.weights.start)
+        total = np.maximum(here.sum(axis=1), 1e-3 * max(float(here.sum(axis=1).mean()), 1e-300))
+        for grid in fracture.grids:
+            pair = here[grid.elements].reshape(-1, 2, here.shape[1])
+            apart = np.repeat(np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0), 2) / total[grid.elements]
+            # a mean by n receivers errs by the light's curve, which is less than its slope, over n
+            alone = (own[grid.elements] > 0) & (own[grid.elements] <= 4)
+            open_[grid.elements] += np.where(alone, _CURVE * apart / np.maximum(own[grid.elements], 1), 0.0)
+        return open_
 
     def with_own(self, elements: np.ndarray, points: np.ndarray) -> Nodes:
         """With receivers of their own for some elements ``(k,)``, each given the mean of ``points (k, s, 3)``."""

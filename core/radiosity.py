@@ -17,7 +17,7 @@ def by_cycles(factors, reflectance, initial, cycles: int, checkpoint: Callable[[
 
     Parameters
     ----------
-    factors : (p, p) float
+    factors : (p, p) float, or Exchange
         K: form factors from each patch (receiver) to each patch (emitter).
     reflectance : (p,) float
     initial : (p,) float [lx]

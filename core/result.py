@@ -159,6 +159,15 @@ class Result:
         """Names of the surfaces."""
         return list(self.transfer.geometry.planes.surfaces)
 
+    @cached_property
+    def error(self) -> np.ndarray:
+        """(n,) float: estimate of what 95 of 100 faces' errors are below [lx]; see docs/method.md."""
+        from .solve import estimate_errors
+
+        cuts = self.transfer.geometry.fracture
+        errors = estimate_errors(self.transfer, self.light, self.sky, self.field)
+        return cuts.side_means(errors)[: len(cuts.faces)]
+
     def faces_of(self, name: str) -> np.ndarray:
         """(k,) int: faces of a surface.
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .errors import SceneError
-from .form_factors import Conservation, gather_nodes, patch_means
+from .estimate import Trial, make_trial
+from .form_factors import Conservation, Exchange, gather_nodes, kinds_of_light, patch_means
 from .geometry import Geometry, make_geometry
 from .globe import Globe
 from .nodes import Nodes
@@ -30,6 +31,10 @@ class Transfer:
         The receivers, and how elements' values follow from theirs.
     lattice : Nodes
         The first of them alone, before any were added where interpolation is in doubt.
+    trial : Trial
+        A coarser look from some of the nodes.
+    unsure : (e,) float
+        What interpolation between nodes leaves open, over all light.
     conservation : Conservation
     form_factors : (m, p) float32
         From each node (receiver) to each patch.
@@ -42,8 +47,8 @@ class Transfer:
         The part of ``form_factors`` that comes by more mirrors than bright polygons are followed through, for the nodes
         in ``deep_rows``.
     deep_rows : (j,) int
-    patch_factors : (p, p) float
-        From patch to patch: area-weighted means over each patch's nodes.
+    exchange : Exchange
+        From patch to patch.
     unlit, truncated : (m,) float32
         Form factors to sides without diffuse light, and of chains cut off.
     limits : ChainLimits
@@ -58,15 +63,22 @@ class Transfer:
     specular_rows: np.ndarray
     deep_factors: np.ndarray
     deep_rows: np.ndarray
-    patch_factors: np.ndarray
+    exchange: Exchange
     unlit: np.ndarray
     truncated: np.ndarray
     nodes: Nodes
     lattice: Nodes
+    trial: Trial
+    unsure: np.ndarray
     conservation: Conservation
     limits: ChainLimits
     threads: int
     stages: tuple[Stage, ...] = field(default=())
+
+    @property
+    def patch_factors(self) -> np.ndarray:
+        """(p, p) float: form factors from patch to patch, area-weighted means over each."""
+        return self.exchange.factors
 
     def on_elements(self, values: np.ndarray) -> np.ndarray:
         """Values on the elements ``(e,)`` from values at the nodes ``(m,)``."""
@@ -149,15 +161,18 @@ def prepare(
     with recorder.stage("fracture", 0.01):
         geometry = make_geometry(scene, planes, globe, max_area)
     _check_memory(geometry, memory)
-    with recorder.stage("visibility and form factors", 0.02):
+    stage = "visibility and form factors"
+    with recorder.stage(stage, 0.02):
         limits = ChainLimits(specular_cutoff, exact_mirrors(geometry.outlines))
         lattice, nodes, gathered = gather_nodes(
-            geometry, limits, threads, lambda done: recorder.report(0.02 + 0.95 * done, "visibility and form factors")
+            geometry, limits, threads, lambda done: recorder.report(0.02 + 0.95 * done, stage)
         )
+        trial = make_trial(geometry, nodes, limits, threads, lambda done: recorder.report(0.97 + 0.02 * done, stage))
+        unsure = nodes.unsure(kinds_of_light(geometry, gathered), geometry.fracture)
         conservation = Conservation.of(geometry, nodes, gathered)
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
-        spread = patch_means(geometry, nodes, conservation.spread[:, None])
-        patch_factors += spread * conservation.missing
+        spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
+        exchange = Exchange(patch_factors, spread, conservation.missing)
     if not geometry.outlines.any_specular:
         recorder.skip("specular chains", "no surface mirrors or transmits regularly")
     recorder.report(1.0, "prepared")
@@ -175,11 +190,13 @@ def prepare(
         if len(deep_rows)
         else np.zeros((0, geometry.targets.patches.count), np.float32),
         deep_rows=deep_rows,
-        patch_factors=patch_factors,
+        exchange=exchange,
         unlit=gathered.unlit,
         truncated=gathered.truncated,
         nodes=nodes,
         lattice=lattice,
+        trial=trial,
+        unsure=unsure,
         conservation=conservation,
         limits=limits,
         threads=threads,

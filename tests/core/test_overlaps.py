@@ -8,7 +8,7 @@ from test_visibility import seen_shares
 from luzespecular import polygons
 from luzespecular.materials import Material
 from luzespecular.sources import Source, gather_sources
-from luzespecular.specular import Outlines
+from luzespecular.specular import ChainLimits, Outlines
 
 SIZE = np.array([4.0, 3.0, 2.5])
 BEYOND = 500.0
@@ -88,7 +88,7 @@ def exact_share(points, normal, outlines):
         for axis, at in ((0, SIZE[0] + 1), (2, SIZE[2] + 1))
     ]
     # no line of sight through a hole meets both within their edges but past the room
-    seen = [gather_sources(scene, [Source(sheet, 1.0)], points, normal, 1e-6) for sheet in sheets]
+    seen = [gather_sources(scene, [Source(sheet, 1.0)], points, normal, ChainLimits(1e-6)) for sheet in sheets]
     return np.maximum(*seen)
 
 

@@ -183,6 +183,7 @@ def test_interreflection_is_the_series_of_the_transfer(reflectances, cycles):
     rho[patch[patch >= 0]] = surface_rho[transfer.geometry.element_surface[patch >= 0]]
     expected = np.zeros(len(initial))
     if cycles:
-        on_patches = radiosity.by_cycles(transfer.patch_factors, rho, mean, cycles - 1)
-        expected = transfer.form_factors @ (rho * on_patches)
+        exitance = rho * radiosity.by_cycles(transfer.exchange, rho, mean, cycles - 1)
+        expected = transfer.form_factors @ exitance
+        expected += transfer.conservation.spread * (transfer.conservation.missing @ exitance)
     np.testing.assert_allclose(result.components["interreflected"], cuts.side_means(expected), rtol=1e-5, atol=1e-4)
