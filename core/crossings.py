@@ -70,6 +70,9 @@ class Candidates:
         outside[pair[place <= -support]] = True
         crossing = np.flatnonzero((np.abs(place) < support) & ~outside[pair])
         edges = np.bincount(pair[crossing], minlength=len(row))
+        idle = _idle(pair[crossing], edges, normal[crossing], place[crossing], reach)
+        edges -= np.bincount(pair[crossing[idle]], minlength=len(row))
+        crossing = np.delete(crossing, idle)
         crossed = np.flatnonzero(edges)
         number = np.cumsum(edges > 0) - 1
         return cls(
@@ -86,6 +89,20 @@ class Candidates:
             across[:, crossing],
             place[crossing],
         )
+
+
+def _idle(pair, edges, normal, place, reach) -> np.ndarray:
+    """Which edges of two that cross a beam bound nothing in it: they run outside the other, past the corner."""
+    two = np.flatnonzero(edges[pair] == 2)
+    two = two[np.argsort(pair[two], kind="stable")]
+    a, b = two[::2], two[1::2]
+    alike = np.einsum("nc,nc->n", normal[a], normal[b])
+    apart = np.sqrt(np.maximum(1 - alike * alike, 0))
+    most = (1.05 * reach[pair[a]]) ** 2
+    # the other edge's distance along each within the beam: at its middle, and how much it may change to either side
+    beside_a = place[b] - place[a] * alike + np.sqrt(np.maximum(most - place[a] ** 2, 0)) * apart < 0
+    beside_b = place[a] - place[b] * alike + np.sqrt(np.maximum(most - place[b] ** 2, 0)) * apart < 0
+    return np.concatenate([a[beside_a & ~beside_b], b[beside_b & ~beside_a]])
 
 
 @dataclass(frozen=True, eq=False)

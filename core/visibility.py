@@ -31,6 +31,7 @@ def look(
     tolerance: float,
     past: HalfSpace | None = None,
     partial: Partial | None = None,
+    wanted: np.ndarray | None = None,
 ) -> View:
     """Find the nearest obstacle along each beam from each point.
 
@@ -49,6 +50,8 @@ def look(
         Only what the beams meet inside it counts: beyond the mirror or pane that they come through.
     partial : Partial, optional
         Beams of which only a part gets there; they are settled as parts of beams throughout.
+    wanted : (r, k) bool, optional
+        Beams that get there from each receiver: edges are not looked for in others.
 
     Returns
     -------
@@ -91,6 +94,9 @@ def look(
             near = np.flatnonzero(np.abs(inside, out=inside) <= limit)
             if len(near):
                 row, column = np.divmod(near, len(columns))
+                if wanted is not None:
+                    there = wanted[row, columns[column]]
+                    near, row, column = near[there], row[there], column[there]
                 if past is not None:
                     ahead = ~((distance[row, column] > 0) & (distance[row, column] < start[row, columns[column]]))
                     near, row, column = near[ahead], row[ahead], column[ahead]
