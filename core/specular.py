@@ -419,6 +419,7 @@ class GroupSight:
                 self.outlines.tolerance,
                 beyond[0] if beyond else None,
                 partial,
+                weights > 0 if beyond else None,
             )
             sighting = Sighting(
                 rows, origin, horizon.normal, beams, obstacles, view, weights, mirrors, self.outlines, partial
