@@ -75,7 +75,7 @@ class Cuts:
         mine = np.flatnonzero(number[self.group] >= 0)
         first = np.cumsum(self.count) - self.count
         count, edge = self.window_count, self.window_edge
-        if count is not None:
+        if count is not None and edge is not None:
             begin = np.cumsum(count) - count
             count, edge = count[groups], edge[_ranges(begin[groups], count[groups])]
         return (
@@ -228,9 +228,9 @@ class _Tally:
         left = 1.0 - covered
         left[left < _CLOSED] = 0.0
         share /= (covered + left)[group]
-        rest = self.whole - np.stack([np.bincount(group, weights=v, minlength=groups) for v in self.visible.T], axis=1)
+        hidden = np.stack([np.bincount(group, weights=v, minlength=groups) for v in self.visible.T], axis=1)
         towards = _towards(frames[self.cuts.beam], self.visible)
-        return Shares(share, towards, left, _towards(frames[beam], rest), self.settled)
+        return Shares(share, towards, left, _towards(frames[beam], self.whole - hidden), self.settled)
 
 
 def _towards(frames, moments) -> np.ndarray:
@@ -246,7 +246,7 @@ class _Regions:
         self.cuts, self.beams, self.shapes = cuts, beams, shapes
         counts, edges = [cuts.count], [cuts.edge]
         owners = [np.repeat(cuts.beam, cuts.count)]
-        if cuts.window_count is not None:  # windows follow the obstacles
+        if cuts.window_count is not None and cuts.window_edge is not None:  # windows follow the obstacles
             beam = np.zeros(len(cuts.window_count), np.int64)
             beam[cuts.group] = cuts.beam
             counts.append(cuts.window_count)
