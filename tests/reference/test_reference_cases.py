@@ -135,7 +135,7 @@ def test_sky_and_ground_through_openings(name):
         total = {k: v + expected["E_ground_lx"][k] for k, v in expected["E_sky_lx"].items()}
         both = points_error(case, transfer.solve(daylight(case, ground=True)), total)
         found |= {f"{k} with ground": v for k, v in both.items()}
-    assert_within(found, 0.3, 1.0)
+    assert_within(found, 0.1, 0.4)
 
 
 @pytest.mark.parametrize("name", ids("B1", "B3-dA"))
@@ -185,7 +185,7 @@ def test_even_field_in_closed_solids(name):
         ("C4-perp2-rho0.9-0.3", 0.3, 1.0),
         ("C5-patch-rho0.5", 0.3, 1.0),
         ("C6-roof-sun", 0.3, 1.2),
-        ("C6-roof-overcast", 0.4, 2.0),  # 40 bands: right below the opening, few parcels see all of it
+        ("C6-roof-overcast", 0.3, 1.0),
         ("C7-window-panel-uniform", 0.3, 1.0),
         ("C8-plates-L4-h1-rho0.5-0.8", 0.3, 1.0),
         # parcels that the mirror's edge crosses lose light
