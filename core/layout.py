@@ -94,6 +94,8 @@ def _within(line: np.ndarray, shape) -> np.ndarray | None:
     """Part of a line inside a run or along its border; None where that is a point."""
     low, high = 0.0, 1.0
     step = line[1] - line[0]
+    if np.abs(step).max() < _ON_LINE:
+        return None
     for axis in (0, 1):
         if abs(step[axis]) < _ON_LINE:
             if not -_ON_LINE < line[0, axis] < shape[axis] + _ON_LINE:

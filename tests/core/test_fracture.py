@@ -1,4 +1,4 @@
-"""Fracture: areas, sizes, what is cut and what is not, and the patches that exitance is resolved in."""
+"""Fracture: areas, sizes, what is cut and what is not."""
 
 import math
 
@@ -12,7 +12,6 @@ import luzespecular as luz
 from luzespecular import fracture as fracture_room
 from luzespecular import polygons
 from luzespecular.fracture import Triangles, cut_pieces, fracture, halve
-from luzespecular.patches import make_patches
 from luzespecular.planes import find_planes
 
 WHITE = luz.Material(diffuse_reflectance=0.5)
@@ -162,67 +161,3 @@ def test_faces_know_the_given_face():
     inward = corners.mean(axis=1) - 0.5
     towards = np.einsum("fc,fc->f", cuts.face_normals, inward[cuts.face_source])
     assert (towards < 0).all()
-
-
-def patches_of(scene, target):
-    cuts, planes = cuts_of(scene, 0.01), find_planes(scene)
-    diffuse = np.array([s.material.diffuse_reflectance > 0 for s in scene.surfaces.values()])
-    active = diffuse[planes.sheet_surface[cuts.element_sheet]]
-    return cuts, make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, target, [])
-
-
-def test_patches_share_out_the_diffuse_surfaces():
-    cuts, patches = patches_of(box(WHITE, (3, 2, 1), ceiling=BLACK), 200)
-    assert 150 <= patches.count <= 400
-    mine = patches.of_element >= 0
-    assert patches.of_element.max() == patches.count - 1
-    assert len(np.unique(patches.of_element[mine])) == patches.count
-    area = np.bincount(patches.of_element[mine], weights=cuts.element_areas[mine])
-    assert area.sum() == pytest.approx(22 - 6)
-    assert area.max() < 4 * area.mean()
-    dark = cuts.face_surface[cuts.element_side] == 1
-    np.testing.assert_array_equal(patches.of_element[dark], -1)
-
-
-def test_patches_are_found_by_place():
-    """The cell that an element's centroid falls in holds the element's own patch."""
-    scene = box(WHITE, (3, 2, 1))
-    cuts, patches = patches_of(scene, 200)
-    planes = find_planes(scene)
-    for sheet in range(6):
-        mine = np.flatnonzero(cuts.element_sheet == sheet)
-        place = cuts.elements[mine].mean(axis=1) @ planes.sheet_axes[sheet].T
-        cell = np.floor((place - patches.grid_origin[sheet]) * patches.grid_scale[sheet]).astype(int)
-        found = patches.grid[patches.grid_base[sheet] + cell[:, 0] * patches.grid_shape[sheet, 1] + cell[:, 1]]
-        np.testing.assert_array_equal(found, patches.of_element[mine])
-
-
-def test_no_diffuse_surface_no_patches():
-    _, patches = patches_of(box(BLACK), 100)
-    assert patches.count == 0 and (patches.of_element == -1).all() and (patches.grid_base == -1).all()
-
-
-def small_sheets(vertices, faces, target):
-    scene = luz.Scene()
-    scene.add("mesh", vertices, WHITE, faces=faces)
-    cuts, planes = cuts_of(scene, math.inf), find_planes(scene)
-    every = np.ones(len(cuts.elements), bool)
-    return make_patches(planes, cuts.elements, cuts.element_sheet, every, cuts.element_areas, target, [])
-
-
-def test_curved_meshes_share_patches():
-    """Sheets smaller than a patch are gathered by place and facing, so patches are not many more than asked for."""
-    turn, height = np.meshgrid(np.linspace(0, 2 * math.pi, 49), np.linspace(-1, 1, 25), indexing="ij")
-    radius = np.sqrt(1 - 0.99 * height**2)
-    vertices = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1).reshape(-1, 3)
-    corner = (np.arange(48)[:, None] * 25 + np.arange(24)).ravel()
-    patches = small_sheets(vertices, np.stack([corner, corner + 25, corner + 26, corner + 1], axis=1), 100)
-    assert 50 <= patches.count <= 400
-    assert (patches.of_element >= 0).all()
-
-
-def test_scattered_leaves_share_patches():
-    rng = np.random.default_rng(3)
-    centre = rng.uniform(0, 1, (2000, 3))
-    triangles = (centre[:, None] + rng.normal(0, 0.01, (2000, 3, 3))).reshape(-1, 3)
-    assert small_sheets(triangles, np.arange(6000).reshape(-1, 3), 100).count < 700
