@@ -111,8 +111,11 @@ def look(
         whole &= distance < before
         whole &= distance > (start if past is None else start[:, columns])
         if whole.any():
-            nearest[:, columns] = np.where(whole, distance, before)
-            seen[:, columns] = np.where(whole, np.int32(o), seen[:, columns])
+            np.copyto(before, distance, where=whole)
+            nearest[:, columns] = before
+            now = seen[:, columns]
+            now[whole] = o
+            seen[:, columns] = now
             possible[o] = columns
     if found:
         row, beam, obstacle, sine = (np.concatenate(x, axis=-1) for x in zip(*found, strict=True))
