@@ -40,7 +40,7 @@ def chunks_of_receivers(points, sheet, planes: Planes, most: int) -> list[np.nda
         members = order[a:b]
         if len(members) > most:
             place = points[members] @ planes.sheet_axes[sheet[members[0]] % fronts].T
-            extent = np.maximum(np.ptp(place, axis=0), 1e-300)
+            extent = np.maximum(np.ptp(place, axis=0), 1e-12)
             blocks = len(members) / most
             cell = math.sqrt(extent.prod() / blocks) if extent.min() > 1e-9 * extent.max() else extent.max() / blocks
             block = np.floor((place - place.min(axis=0)) / cell)

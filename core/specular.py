@@ -29,6 +29,7 @@ _FEW_BEAMS = 2_500
 
 _MOST_IMAGES = 80
 _DEEPEST_IMAGE = 40
+_WALLS_OF_BOX = 6
 
 _WITHIN = 4e-5
 """Angle from a mirror's edge that centres of parts keep [rad], so that nothing that stands at the edge is before it."""
@@ -151,13 +152,14 @@ class ChainLimits:
 def exact_mirrors(outlines: Outlines) -> int:
     """How many mirrors on the way leave images few enough to be looked for one by one.
 
-    Between n mirrors there are at most n (n − 1)^(k − 1) images of order k; between those of a box, which meet at
-    right angles, about 4 k² + 2.
+    Between n mirrors there are at most n (n − 1)^(k − 1) images of order k; between up to six, which will mostly be
+    walls of a box that meet at right angles, about 4 k² + 2.
     """
     n = sum(m.is_specular for m in outlines.materials)
     images, order = 0, 0
     while order < _DEEPEST_IMAGE:
-        images += min(n * max(n - 1, 1) ** order, 4 * (order + 1) ** 2 + 2)
+        every = n * max(n - 1, 1) ** order
+        images += min(every, 4 * (order + 1) ** 2 + 2) if n <= _WALLS_OF_BOX else every
         if order and images > _MOST_IMAGES:
             break
         order += 1

@@ -1,4 +1,4 @@
-"""Walls that shelves touch, cut into cells: what the tests of layout, nodes and patches share."""
+"""Walls that shelves touch, cut into cells, and means over faces: what tests of layout, nodes and patches share."""
 
 import numpy as np
 import pytest
@@ -49,3 +49,11 @@ def geometry_of(scene, max_area=AREA, patches=100, elements=8):
         patch.setattr(fracture, "ELEMENTS_PER_PLAIN_SURFACE", 2)
         patch.setattr(geometry, "PATCHES", patches)
         return make_geometry(scene, find_planes(scene), Globe(4), max_area)
+
+
+def triangle_rule(parts):
+    """(parts², 3): barycentric centroids of a triangle's equal parts."""
+    upright = [(i + 1 / 3, j + 1 / 3) for i in range(parts) for j in range(parts - i)]
+    turned = [(i + 2 / 3, j + 2 / 3) for i in range(parts - 1) for j in range(parts - 1 - i)]
+    places = np.array(upright + turned) / parts
+    return np.c_[places, 1 - places.sum(axis=1)]

@@ -2,7 +2,6 @@
 
 import math
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import luzespecular as luz
-from luzespecular.parallel import chunks_of_receivers, run_parallel
 
 WHITE = luz.Material(diffuse_reflectance=0.5)
 MIRROR = luz.Material(specular_reflectance=0.8)
@@ -96,16 +94,6 @@ def test_patch_factors_are_means_over_elements():
         mine = patch == number
         mean = np.average(transfer.form_factors[mine], axis=0, weights=area[mine])
         np.testing.assert_allclose(transfer.patch_factors[number], mean, rtol=1e-4, atol=1e-7)
-
-
-def test_chunks_share_out_the_receivers_plane_by_plane():
-    transfer = prepare_coarse(room(), elements=2000)
-    nodes, planes = transfer.nodes, transfer.geometry.planes
-    chunks = chunks_of_receivers(nodes.points, nodes.sheet, planes, 500)
-    np.testing.assert_array_equal(np.sort(np.concatenate(chunks)), np.arange(len(nodes.points)))
-    assert len(chunks) > len(planes.sheet_surface)
-    for chunk in chunks:
-        assert len(np.unique(nodes.sheet[chunk])) == 1
 
 
 def test_elements_follow_from_their_nodes():
@@ -199,39 +187,6 @@ def test_preparing_can_be_cancelled_anywhere(fraction, threads):
     assert list(scene.surfaces) == list(room().surfaces)
 
 
-def test_cancelling_does_not_wait_for_the_rest():
-    """Work under way stops at its next checkpoint; tasks not begun never run."""
-    started = []
-
-    def work(task, checkpoint):
-        started.append(task)
-        for _ in range(100):
-            time.sleep(0.005)
-            checkpoint()
-
-    def stop(done):
-        raise luz.Cancelled("now")
-
-    def quick(task, checkpoint):
-        if task:
-            work(task, checkpoint)
-
-    begin = time.perf_counter()
-    with pytest.raises(luz.Cancelled):
-        run_parallel(quick, list(range(20)), 2, stop)
-    assert time.perf_counter() - begin < 0.4
-    assert len(started) < 6
-
-
-def test_errors_of_a_task_come_through():
-    def work(task, checkpoint):
-        if task == 3:
-            raise ZeroDivisionError("task three")
-
-    with pytest.raises(ZeroDivisionError, match="task three"):
-        run_parallel(work, list(range(6)), 2, lambda done: None)
-
-
 def test_errors_of_the_callback_come_through():
     def progress(fraction, stage):
         if fraction > 0.1:
@@ -299,6 +254,22 @@ def test_skies_err_with_the_square_of_the_bands(sky):
     assert errors[1] < 3e-4
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.15)
     assert errors[1] / errors[2] == pytest.approx(4, rel=0.15)
+
+
+@pytest.mark.parametrize("normal", [(1.0, 0.0, 0.0), (0.6, 0.0, -0.8)])
+def test_skies_and_ground_on_a_tilted_plane_err_with_the_square_of_the_bands(normal):
+    """The horizon crosses what the plane sees, of a sky that is bright there or dark, with ground below."""
+    clear = luz.CIESky(12, sun_altitude=40, sun_azimuth=150, zenith_luminance=1000.0)
+    for sky in (clear, luz.CIESky(16, zenith_luminance=1000.0)):
+        light = luz.Daylight(sky=sky, ground_reflectance=0.3)
+        far = {"far": np.array(PLATE["plate"]) - [0, 0, 1000]}
+        bands = (16, 32, 64)
+        found = [
+            prepare_coarse(scene_of(far), bands=n).solve(light).at([[0.5, 0.5, 0]], [normal])[0] for n in (*bands, 256)
+        ]
+        errors = np.abs(np.array(found[:3]) / found[3] - 1)
+        assert errors[2] < 2e-3
+        assert (errors[:2] / errors[1:] > 3.4).all()
 
 
 @pytest.mark.parametrize("name", ["bands", "max_area", "threads", "memory", "specular_cutoff"])
