@@ -24,6 +24,9 @@ ELEMENTS_PER_PLAIN_SURFACE = 96
 """Receivers inside a surface that neither emits nor reflects diffusely, and so is not cut itself."""
 
 
+_FEWEST_CELLS = 4
+
+
 @dataclass(frozen=True, eq=False)
 class Grid:
     """A run of triangles that are the halves of rows × columns cells.
@@ -46,7 +49,7 @@ class Grid:
     along_rows: np.ndarray
     along_columns: np.ndarray
 
-    centroids = ((2 / 3, 1 / 3), (1 / 3, 2 / 3))
+    corners = (((0, 0), (1, 0), (1, 1)), ((0, 0), (1, 1), (0, 1)))
     """Of a cell's halves, in cells along either axis."""
 
     @property
@@ -59,6 +62,15 @@ class Grid:
         """(3,) float, unit."""
         normal = polygons.cross(self.along_rows, self.along_columns)
         return normal / np.linalg.norm(normal)
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """(2 · rows · columns, 3, 3) float: the halves of the cells."""
+        rows, columns = np.indices((self.rows + 1, self.columns + 1))
+        corner = self.corner + rows[:, :, None] * self.along_rows + columns[:, :, None] * self.along_columns
+        p, q, r, s = corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]
+        cells = np.stack([np.stack([p, q, r], axis=2), np.stack([p, r, s], axis=2)], axis=2)
+        return cells.reshape(-1, 3, 3)
 
     def in_cells(self, points) -> np.ndarray:
         """(n, 2) float: places of points ``(n, 3)`` of its plane, in cells along either axis."""
@@ -119,7 +131,7 @@ def cut_pieces(pieces, counts, max_areas) -> Triangles:
         gap = v[:, 0] + v[:, 2] - v[:, 1] - v[:, min(3, v.shape[1] - 1)]
         closes &= np.linalg.norm(gap, axis=1) <= 1e-9 * np.ptp(v, axis=1).max(axis=1)
     side = np.sqrt(2 * limits)
-    shapes = {}
+    runs = {}
     for length in np.unique(counts[~closes]):
         rows = np.flatnonzero(~closes & (counts == length))
         fan = np.stack(
@@ -133,19 +145,15 @@ def cut_pieces(pieces, counts, max_areas) -> Triangles:
         nv = max(1, math.ceil(np.linalg.norm(d - a) / side[row] - 1e-9))
         while np.linalg.norm(polygons.cross(b - a, d - a)) / (nu * nv) > 2 * limits[row] * (1 + 1e-9):
             nu, nv = nu + 1, nv + 1
-        corner = (
-            a + (np.arange(nu + 1) / nu)[:, None, None] * (b - a) + (np.arange(nv + 1) / nv)[None, :, None] * (d - a)
-        )
-        p, q, r, s = corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]
-        cells = np.stack([np.stack([p, q, r], axis=2), np.stack([p, r, s], axis=2)], axis=2)
-        triangles.append(cells.reshape(-1, 3, 3))
+        run = Grid(0, nu, nv, a, (b - a) / nu, (d - a) / nv)
+        triangles.append(run.triangles)
         order.append(np.full(2 * nu * nv, row))
-        shapes[int(row)] = (nu, nv, a, (b - a) / nu, (d - a) / nv)
+        runs[int(row)] = run
     parent = np.concatenate(order)
     vertices = np.concatenate(triangles)
     arranged = np.argsort(parent, kind="stable")
     cut = halve(Triangles(vertices[arranged], parent[arranged]), limits)
-    grids = tuple(Grid(int(np.searchsorted(cut.parent, row)), *shape) for row, shape in shapes.items())
+    grids = tuple(replace(run, first=int(np.searchsorted(cut.parent, row))) for row, run in runs.items())
     return Triangles(cut.vertices, cut.parent, grids)
 
 
@@ -190,7 +198,7 @@ def halve(triangles: Triangles, limits) -> Triangles:
     """
     vertices, parent = triangles.vertices, triangles.parent
     limits = np.asarray(limits, float)
-    done_vertices, done_parent = [], []
+    done_vertices, done_parent = [vertices[:0]], [parent[:0]]
     while len(vertices):
         large = polygons.areas(vertices) > limits[parent] * (1 + 1e-9)
         done_vertices.append(vertices[~large])
@@ -295,7 +303,7 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
     surface_area = np.bincount(surface, weights=piece_areas, minlength=len(planes.surfaces))
     reflecting = surface_area[np.asarray(reflects)].sum()
     fine = np.where(np.asarray(reflects), reflecting / FEWEST_ELEMENTS, surface_area / ELEMENTS_PER_PLAIN_SURFACE)
-    parts = halve(Triangles(faces.vertices, np.arange(len(faces.parent))), fine[face_surface])
+    parts = _elements(faces, fine[face_surface])
     sheet = planes.given_sheet[faces.parent]
     back_of = np.flatnonzero(np.asarray(two_sided)[face_surface])
     place = np.full(len(faces.parent), -1)
@@ -305,14 +313,10 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
     element_sheet = np.concatenate([sheet[parts.parent], sheet[parts.parent[behind]] + len(planes.sheet_surface)])
     elements = np.concatenate([parts.vertices, parts.vertices[behind][:, ::-1]])
     grids = []
-    for grid in faces.grids:
-        span = 2 * grid.rows * grid.columns
-        first, last = np.searchsorted(parts.parent, [grid.first, grid.first + span])
-        if last - first != span or span < 4 * 2:
-            continue  # halved further, or too few cells to tell how light changes
-        grids.append(replace(grid, first=int(first)))
-        if place[grid.first] >= 0:
-            grids.append(replace(grid, first=len(parts.parent) + int(np.searchsorted(behind, first))))
+    for grid in parts.grids:
+        grids.append(grid)
+        if place[parts.parent[grid.first]] >= 0:
+            grids.append(replace(grid, first=len(parts.parent) + int(np.searchsorted(behind, grid.first))))
     return Fracture(
         faces=faces.vertices,
         face_surface=face_surface,
@@ -326,3 +330,41 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
         element_areas=polygons.areas(elements),
         grids=tuple(grids),
     )
+
+
+def _elements(faces: Triangles, limits: np.ndarray) -> Triangles:
+    """Cut faces into elements no larger than limits ``(faces,)``: runs of cells into finer runs, others by halving."""
+    areas = faces.areas
+    alone = np.ones(len(areas), bool)
+    found, parents, grids, count = [], [], [], 0
+    for grid in faces.grids:
+        cells = np.arange(grid.first, grid.first + 2 * grid.rows * grid.columns)
+        times = max(1, math.ceil(math.sqrt(areas[grid.first] / limits[grid.first]) - 1e-9))
+        if grid.rows * grid.columns * times**2 < _FEWEST_CELLS:
+            continue  # too few cells to tell how light changes
+        alone[cells] = False
+        finer = Grid(
+            count,
+            grid.rows * times,
+            grid.columns * times,
+            grid.corner,
+            grid.along_rows / times,
+            grid.along_columns / times,
+        )
+        found.append(finer.triangles)
+        parents.append(grid.first + _halves_of(finer, times).ravel())
+        grids.append(finer)
+        count += len(parents[-1])
+    single = np.flatnonzero(alone)
+    halved = halve(Triangles(faces.vertices[single], np.arange(len(single))), limits[single])
+    return Triangles(
+        np.concatenate([*found, halved.vertices]), np.concatenate([*parents, single[halved.parent]]), tuple(grids)
+    )
+
+
+def _halves_of(grid: Grid, times: int) -> np.ndarray:
+    """(rows, columns, 2) int: triangle of the run that each of a finer run, ``times`` as fine, lies in."""
+    row, column, half = np.indices((grid.rows, grid.columns, 2))
+    cell = (row // times) * (grid.columns // times) + column // times
+    across, along = row % times, column % times
+    return 2 * cell + np.where(across == along, half, across < along)

@@ -17,13 +17,27 @@ from . import polygons
 from .fracture import Fracture
 from .layout import Layout
 
-_DENSE_SHARE = 0.4
+_DENSE_SHARE = 0.7
 """Growth of the lattice's spacing with the distance from the border."""
 
-DOUBT = 0.01
+DOUBT = 0.02
 """Difference of cubic and linear interpolation, relative to all light, from which elements get their own receivers."""
 
 _CURVE = 0.1
+
+_SPACES = 8
+"""Widest spaces between lines of nodes, in a stretch."""
+
+_BESIDE = 0.12
+"""Distance from the end of a stretch to its first line of nodes, in cells: light changes fast beside other planes."""
+
+# Radon's rule for means over triangles, exact to the fifth degree: barycentric places, and shares
+_NEAR, _FAR = (6 - np.sqrt(15)) / 21, (6 + np.sqrt(15)) / 21
+_MEAN_POINTS = np.array(
+    [[1 / 3] * 3] + [np.roll([1 - 2 * a, a, a], k).tolist() for a in (_NEAR, _FAR) for k in range(3)]
+)
+_MEAN_SHARES = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
+_MOST_SPLITS = 3
 
 STEEP = 0.15
 """Difference between the halves of a cell, relative to all light, from which several receivers serve each."""
@@ -76,6 +90,16 @@ class Weights:
             np.concatenate([self.node[keep], node]),
             np.concatenate([self.weight[keep], weight]),
             count,
+        )
+
+    def shared(self, quartered, element, node, weight) -> Weights:
+        """With a quarter of the weight for some nodes ``quartered``, and new entries."""
+        kept = np.where(np.isin(self.node, quartered), 0.25, 1.0) * self.weight
+        return Weights.of(
+            np.concatenate([self.rows, element]),
+            np.concatenate([self.node, node]),
+            np.concatenate([kept, weight]),
+            len(self.start) - 1,
         )
 
 
@@ -161,16 +185,37 @@ class Nodes:
         return open_
 
     def with_own(self, elements: np.ndarray, points: np.ndarray) -> Nodes:
-        """With receivers of their own for some elements ``(k,)``, each given the mean of ``points (k, s, 3)``."""
-        each = points.shape[1]
-        element = np.repeat(elements, each)
-        node, weight = len(self.points) + np.arange(len(element)), np.full(len(element), 1.0 / each)
+        """With receivers of their own ``points`` (k, 3) for some elements ``(k,)``."""
+        node = len(self.points) + np.arange(len(elements))
+        return self._with(
+            elements,
+            points,
+            self.weights.replaced(elements, node, np.ones(len(node))),
+            self.around.replaced(elements, node, np.ones(len(node))),
+        )
+
+    def with_split(self, pieces: _Pieces) -> tuple[Nodes, _Pieces]:
+        """With four receivers for each of some pieces, and these in four."""
+        parts = pieces.split(len(self.points))
+        new = parts.node >= len(self.points)
+        element, node = parts.element[new], parts.node[new]
+        return (
+            self._with(
+                element,
+                parts.triangle[new].mean(axis=1),
+                self.weights.shared(pieces.node, element, node, parts.share[new]),
+                self.around.shared(pieces.node, element, node, parts.share[new]),
+            ),
+            parts,
+        )
+
+    def _with(self, element, points, weights: Weights, around: Weights) -> Nodes:
         return Nodes(
-            np.concatenate([self.points, points.reshape(-1, 3)]),
+            np.concatenate([self.points, points]),
             np.concatenate([self.element, element]),
             self.element_sheet,
-            self.weights.replaced(element, node, weight),
-            self.around.replaced(element, node, weight),
+            weights,
+            around,
             self.foretold,
         )
 
@@ -190,38 +235,77 @@ def settled(lattice: Nodes, fracture: Fracture, evaluate: Callable[[Nodes, int],
     Nodes
     """
     nodes, values = lattice, evaluate(lattice, 0)
-    for choose, parts in ((_doubtful, 1), (_steep, 4)):
-        elements = choose(nodes, values, fracture)
-        if len(elements):
-            first = len(nodes.points)
-            nodes = nodes.with_own(elements, _sub_centroids(fracture.elements[elements], parts))
-            values = evaluate(nodes, first)
+    doubtful = np.flatnonzero(nodes.doubt(values) > DOUBT)
+    if len(doubtful):
+        first = len(nodes.points)
+        nodes = nodes.with_own(doubtful, fracture.elements[doubtful].mean(axis=1))
+        values = evaluate(nodes, first)
+    pieces = _Pieces.steep(nodes, values, fracture)
+    for _ in range(_MOST_SPLITS):
+        if not len(pieces.node):
+            break
+        first = len(nodes.points)
+        nodes, pieces = nodes.with_split(pieces)
+        values = evaluate(nodes, first)
+        pieces = pieces.uneven(values, nodes.weights.apply(values).sum(axis=1))
     return nodes
 
 
-def _doubtful(nodes: Nodes, values: np.ndarray, fracture: Fracture) -> np.ndarray:
-    return np.flatnonzero(nodes.doubt(values) > DOUBT)
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """Triangles, parts of elements, with the node in the middle of each.
 
+    Attributes
+    ----------
+    triangle : (k, 3, 3) float
+    element, node : (k,) int
+    share : (k,) float
+        Of the element's area.
+    """
 
-def _steep(nodes: Nodes, values: np.ndarray, fracture: Fracture) -> np.ndarray:
-    """Elements with one receiver of their own that the other half of their cell differs much from."""
-    own, here = np.diff(nodes.weights.start) == 1, nodes.weights.apply(values)
-    total = np.maximum(here.sum(axis=1), 1e-3 * max(float(here.sum(axis=1).mean()), 1e-300))
-    found = []
-    for grid in fracture.grids:
-        pair = here[grid.elements].reshape(-1, 2, here.shape[1])
-        apart = np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0)
-        steep = np.repeat(apart, 2) > STEEP * total[grid.elements]
-        found.append(grid.first + np.flatnonzero(steep & own[grid.elements]))
-    return np.concatenate([np.zeros(0, np.int64), *found])
+    triangle: np.ndarray
+    element: np.ndarray
+    node: np.ndarray
+    share: np.ndarray
 
+    @classmethod
+    def steep(cls, nodes: Nodes, values: np.ndarray, fracture: Fracture) -> _Pieces:
+        """Elements with one receiver of their own that the other half of their cell differs much from."""
+        own, here = np.diff(nodes.weights.start) == 1, nodes.weights.apply(values)
+        total = here.sum(axis=1)
+        total = np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))
+        found = [np.zeros(0, np.int64)]
+        for grid in fracture.grids:
+            pair = here[grid.elements].reshape(-1, 2, here.shape[1])
+            apart = np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0)
+            steep = np.repeat(apart, 2) > STEEP * total[grid.elements]
+            found.append(grid.first + np.flatnonzero(steep & own[grid.elements]))
+        element = np.concatenate(found)
+        node = nodes.weights.node[nodes.weights.start[element]]
+        return cls(fracture.elements[element], element, node, np.ones(len(element)))
 
-def _sub_centroids(triangles: np.ndarray, parts: int) -> np.ndarray:
-    """(k, parts, 3) float: centroids of triangles, or of the four that halving their edges makes."""
-    middle = triangles.mean(axis=1, keepdims=True)
-    if parts == 1:
-        return middle
-    return np.concatenate([middle, 0.5 * (middle + triangles)], axis=1)
+    def split(self, first: int) -> _Pieces:
+        """Each in four: the middle keeps the node, the corners get those from ``first`` on."""
+        corners = self.triangle
+        middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+        before = np.roll(middles, 1, axis=1)
+        outer = np.stack([corners, middles, before], axis=2)  # at each corner: itself, and both middles next to it
+        inner = middles[:, None]
+        count = len(self.node)
+        return _Pieces(
+            np.concatenate([inner, outer], axis=1).reshape(-1, 3, 3),
+            np.repeat(self.element, 4),
+            np.concatenate([self.node[:, None], first + np.arange(3 * count).reshape(-1, 3)], axis=1).ravel(),
+            np.repeat(0.25 * self.share, 4),
+        )
+
+    def uneven(self, values: np.ndarray, total: np.ndarray) -> _Pieces:
+        """Of pieces split last, those that still differ among each other by more than their element can bear."""
+        four = values[self.node].reshape(-1, 4, values.shape[1])
+        apart = np.abs(four[:, 1:] - four[:, :1]).max(axis=(1, 2), initial=0.0)
+        bearable = STEEP * np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))[self.element[::4]]
+        mine = np.repeat(4 * self.share[::4] * apart > bearable, 4)
+        return _Pieces(self.triangle[mine], self.element[mine], self.node[mine], self.share[mine])
 
 
 class _Entries:
@@ -271,19 +355,22 @@ def _enter(lattice: Layout, entries: _Entries) -> None:
     stretches = [[(a, n, a + _lines(n)) for a, n in along] for along in lattice.stretches]
     lines = [np.concatenate([part[2] for part in along]) for along in stretches]
     rows, columns = np.meshgrid(*lines, indexing="ij")
-    cell = (rows * grid.columns + columns).ravel()
-    points = grid.corner + (rows.ravel()[:, None] + 0.5) * grid.along_rows
-    points = points + (columns.ravel()[:, None] + 0.5) * grid.along_columns
+    cell = (np.floor(rows).astype(int) * grid.columns + np.floor(columns).astype(int)).ravel()
+    points = grid.corner + rows.ravel()[:, None] * grid.along_rows + columns.ravel()[:, None] * grid.along_columns
     numbers = entries.add(points, grid.first + 2 * cell).reshape(rows.shape)
     _foretell(stretches, numbers, entries)
     whole = np.flatnonzero(~lattice.cut.ravel())
-    for half, (across, along) in enumerate(grid.centroids):
-        row, column = np.divmod(whole, grid.columns)
-        for order, out in ((4, entries.weights), (2, entries.around)):
-            line_a, weight_a = _stencils(stretches[0], np.arange(grid.rows) + across, order)
-            line_b, weight_b = _stencils(stretches[1], np.arange(grid.columns) + along, order)
+    row, column = np.divmod(whole, grid.columns)
+    for half, corners in enumerate(np.array(grid.corners, float)):
+        centre = np.mean(corners, axis=0, keepdims=True)
+        for order, places, shares, out in (
+            (4, _MEAN_POINTS @ corners, _MEAN_SHARES, entries.weights),
+            (2, centre, np.ones(1), entries.around),
+        ):
+            line_a, weight_a = _stencils(stretches[0], np.arange(grid.rows), centre[0, 0], places[:, 0], order)
+            line_b, weight_b = _stencils(stretches[1], np.arange(grid.columns), centre[0, 1], places[:, 1], order)
             node = numbers[line_a[row][:, :, None], line_b[column][:, None, :]]
-            weight = weight_a[row][:, :, None] * weight_b[column][:, None, :]
+            weight = np.einsum("kna,knb,k->nab", weight_a[:, row], weight_b[:, column], shares)
             element = np.broadcast_to((grid.first + 2 * whole + half)[:, None, None], node.shape)
             out.append((element.ravel(), node.ravel(), weight.ravel()))
 
@@ -311,35 +398,39 @@ def _left_out(lines: np.ndarray):
             continue
         start = min(max(k - 2, 0), len(lines) - 5)
         others = np.delete(np.arange(start, start + 5), k - start)
-        at = lines[others].astype(float)
+        at = lines[others]
         weights = [np.prod((lines[k] - np.delete(at, j)) / (at[j] - np.delete(at, j))) for j in range(len(others))]
         yield k, others, np.array(weights)
 
 
 def _lines(count: int) -> np.ndarray:
-    """Cells of a stretch that lines of nodes run through: all at its ends, fewer and fewer towards its middle."""
-    most = max(3, count // 8)
+    """Places of the lines of nodes along a stretch, in cells: close at its ends, wider and wider towards its middle."""
+    if count == 1:
+        return np.array([0.5])
+    most = max(3, count // _SPACES)
     half, middle = [0], (count - 1) / 2
     while half[-1] + 1 <= middle:
         half.append(min(half[-1] + min(most, 1 + int(_DENSE_SHARE * half[-1])), int(middle)))
-    lines = np.array(half)
-    return np.unique(np.concatenate([lines, count - 1 - lines]))
+    lines = np.array([_BESIDE, *(0.5 + np.array(half))])
+    return np.unique(np.concatenate([lines, count - lines]))
 
 
-def _stencils(stretches: list, places: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lines ``(n, order)`` that serve places in cells ``(n,)``, and Lagrange's weights; unused ones weigh nothing."""
-    numbers, weights = np.zeros((len(places), order), np.int64), np.zeros((len(places), order))
+def _stencils(stretches: list, cells: np.ndarray, centre: float, places: np.ndarray, order: int):
+    """Lines that serve cells ``(n, order)``, and Lagrange's weights for places in them ``(k, n, order)``.
+
+    Lines are those around each cell's own ``centre``; unused ones weigh nothing.
+    """
+    numbers, weights = np.zeros((len(cells), order), np.int64), np.zeros((len(places), len(cells), order))
     first = 0
     for begin, count, lines in stretches:
-        mine = np.flatnonzero((places >= begin) & (places < begin + count))
-        place, used = places[mine], min(order, len(lines))
-        middle = lines + 0.5
-        start = np.clip(np.searchsorted(middle, place) - used // 2, 0, len(lines) - used)
+        mine = np.flatnonzero((cells >= begin) & (cells < begin + count))
+        used = min(order, len(lines))
+        start = np.clip(np.searchsorted(lines, cells[mine] + centre) - used // 2, 0, len(lines) - used)
         index = start[:, None] + np.arange(used)
-        at = middle[index]
+        at, place = lines[index], places[:, None] + cells[mine]
         for k in range(used):
             others = np.delete(np.arange(used), k)
-            weights[mine, k] = ((place[:, None] - at[:, others]) / (at[:, [k]] - at[:, others])).prod(axis=1)
+            weights[:, mine, k] = ((place[:, :, None] - at[:, others]) / (at[:, [k]] - at[:, others])).prod(axis=2)
         numbers[mine, :used] = first + index
         first += len(lines)
     return numbers, weights
