@@ -68,9 +68,21 @@ def make_trial(
     -------
     Trial
     """
-    bands = max(2, round(geometry.targets.globe.bands / math.sqrt(2)))
-    targets = Targets.of(geometry.planes, geometry.targets.patches, Globe(bands))
-    some = _sample(nodes.sheet)
+    bands = round(geometry.targets.globe.bands / math.sqrt(2))
+    return look_from(geometry, nodes, sample(nodes.sheet), bands, limits, threads, report)
+
+
+def look_from(
+    geometry: Geometry,
+    nodes: Nodes,
+    some: np.ndarray,
+    bands: int,
+    limits: ChainLimits,
+    threads: int,
+    report: Callable[[float], None],
+) -> Trial:
+    """Look from some of the nodes ``(k,)`` on a globe of ``bands``, or of one more; else as `make_trial`."""
+    targets = Targets.of(geometry.planes, geometry.targets.patches, Globe.cut_at_horizon(max(2, bands)))
     patches = np.zeros((len(some), targets.patches.count), np.float32)
     sky = np.zeros((len(some), targets.columns), np.float32)
 
@@ -88,8 +100,8 @@ def make_trial(
     return Trial(some, targets, patches, sky)
 
 
-def _sample(sheet: np.ndarray) -> np.ndarray:
-    """Some nodes of each sheet, evenly among them; of few sheets' where there are very many."""
+def sample(sheet: np.ndarray) -> np.ndarray:
+    """Numbers of some nodes of each sheet, evenly among them; of few sheets' where there are very many."""
     order = np.argsort(sheet, kind="stable")
     starts = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0))) if len(order) else np.zeros(0, int)
     sizes = np.diff(np.append(starts, len(order)))

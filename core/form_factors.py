@@ -63,6 +63,11 @@ class Rows:
             getattr(wide, name)[: len(mine)] = mine
         return wide
 
+    def kinds_of_light(self, geometry: Geometry) -> np.ndarray:
+        """(m, g) float: see `kinds_of_light`."""
+        sky = self.sky_direct + self.sky_specular if self.specular_rows.any() else self.sky_direct
+        return kinds_of_light(geometry, self.form_factors, sky)
+
     def put(self, members: np.ndarray, rows: Gathered) -> None:
         """Enter the rows of some nodes."""
         self.form_factors[members] = rows.patches
@@ -78,7 +83,7 @@ class Rows:
 
 
 def gather_nodes(
-    geometry: Geometry, limits: ChainLimits, threads: int, report: Callable[[float], None]
+    geometry: Geometry, limits: ChainLimits, times: float, threads: int, report: Callable[[float], None]
 ) -> tuple[Nodes, Nodes, Rows]:
     """Form factors of all nodes.
 
@@ -86,6 +91,8 @@ def gather_nodes(
     ----------
     geometry : Geometry
     limits : ChainLimits
+    times : float
+        How many times finer than usual.
     threads : int
     report : callable(fraction)
 
@@ -109,9 +116,9 @@ def gather_nodes(
             geometry, nodes, members, found, sights, limits, threads, lambda part: report(begun + share * part)
         )
         done = begun + share
-        return kinds_of_light(geometry, found)
+        return found.kinds_of_light(geometry)
 
-    nodes = settled(lattice, geometry.fracture, evaluate)
+    nodes = settled(lattice, geometry.fracture, evaluate, times)
     report(1.0)
     return lattice, nodes, found
 
@@ -136,7 +143,7 @@ def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, 
     run_parallel(work, chunks, threads, report)
 
 
-def kinds_of_light(geometry: Geometry, rows: Rows) -> np.ndarray:
+def kinds_of_light(geometry: Geometry, form_factors: np.ndarray, sky_factors: np.ndarray) -> np.ndarray:
     """(m, g) float: what nodes get from four sides of the sky and from surfaces, about as bright as these will be.
 
     The sides blend into each other: between sharp ones light would seem to change from node to node where it does not.
@@ -146,16 +153,14 @@ def kinds_of_light(geometry: Geometry, rows: Rows) -> np.ndarray:
     sides = np.zeros((targets.columns, 4), np.float32)
     sides[:-1] = 0.25 * (1 + np.stack([east, -east, north, -north], axis=1))
     sides[-1] = 0.25
-    sky = rows.sky_direct @ sides
-    if rows.specular_rows.any():
-        sky += rows.sky_specular @ sides
+    sky = sky_factors @ sides
     patches, cuts = targets.patches.count, geometry.fracture
     sheet = np.zeros(patches, np.int64)
     mine = targets.patches.of_element >= 0
     sheet[targets.patches.of_element[mine]] = cuts.element_sheet[mine]
     groups = np.zeros((patches, _GROUPS), np.float32)
     groups[np.arange(patches), sheet * _GROUPS // (2 * len(planes.sheet_surface))] = 1.0
-    reflected = rows.form_factors @ groups
+    reflected = form_factors @ groups
     share = _OF_REFLECTED if sky.sum() > 1e-3 * max(float(reflected.sum()), 1e-300) else 1.0
     return np.concatenate([sky, share * reflected], axis=1).astype(float)
 

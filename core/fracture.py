@@ -268,7 +268,7 @@ class Fracture:
         return mean / area
 
 
-def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -> Fracture:
+def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None, times: float = 1.0) -> Fracture:
     """Cut the scene's planes into faces and elements.
 
     Parameters
@@ -281,6 +281,8 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
     two_sided : (surfaces,) bool
     max_area : float or None
         Largest area of a face [m²]; None = chosen for the scene; inf = faces as given, only triangulated.
+    times : float
+        How many times as many faces and elements as usual, where the number is chosen here.
 
     Returns
     -------
@@ -295,14 +297,16 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None) -
     piece_areas = polygons.areas(planes.given)
     is_cut = np.asarray(cut)[surface]
     total = piece_areas[is_cut].sum()
-    limit = total / DEFAULT_FACES if max_area is None else max_area
+    limit = total / (DEFAULT_FACES * times) if max_area is None else max_area
     limits = np.where(is_cut, limit if total else math.inf, math.inf)
     _check_count(planes, is_cut, limits, total)
     faces = cut_pieces(planes.given, planes.given_counts, limits)
     face_surface = surface[faces.parent]
     surface_area = np.bincount(surface, weights=piece_areas, minlength=len(planes.surfaces))
     reflecting = surface_area[np.asarray(reflects)].sum()
-    fine = np.where(np.asarray(reflects), reflecting / FEWEST_ELEMENTS, surface_area / ELEMENTS_PER_PLAIN_SURFACE)
+    fine = (
+        np.where(np.asarray(reflects), reflecting / FEWEST_ELEMENTS, surface_area / ELEMENTS_PER_PLAIN_SURFACE) / times
+    )
     parts = _elements(faces, fine[face_surface])
     sheet = planes.given_sheet[faces.parent]
     back_of = np.flatnonzero(np.asarray(two_sided)[face_surface])

@@ -50,15 +50,18 @@ class Geometry:
         return self.planes.sheet_surface[self.fracture.element_sheet % len(self.planes.sheet_surface)]
 
 
-def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | None) -> Geometry:
-    """Cut planes into faces, elements and patches, and list the outlines with their materials."""
+def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | None, times: float = 1.0) -> Geometry:
+    """Cut planes into faces, elements and patches, and list the outlines with their materials.
+
+    ``times`` as many faces and patches as usual are made, where the user gives no ``max_area``.
+    """
     surfaces = list(scene.surfaces.values())
     reflects = np.array([s.material.diffuse_reflectance > 0 for s in surfaces])
     emits = np.array([s.material.exitance > 0 for s in surfaces])
     # light that a black luminous surface receives goes nowhere: cut it only where the user says how fine
     cut = reflects | (emits & (max_area is not None))
     two_sided = np.array([s.two_sided for s in surfaces])
-    cuts = fracture(planes, cut, reflects, two_sided, max_area)
+    cuts = fracture(planes, cut, reflects, two_sided, max_area, times)
     points = cuts.elements.mean(axis=1)
     fronts = len(planes.sheet_surface)
     surface = planes.sheet_surface[cuts.element_sheet % fronts]
@@ -67,7 +70,9 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
     )
     active = (reflects | emits)[surface]
     lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes) for grid in cuts.grids]
-    patches = make_patches(planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, PATCHES, lattices)
+    patches = make_patches(
+        planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, round(PATCHES * times), lattices
+    )
     outline_surface = planes.sheet_surface[planes.outline_sheet]
     outline_normals = planes.sheet_normal[planes.outline_sheet]
     outlines = Outlines(

@@ -220,7 +220,9 @@ class Nodes:
         )
 
 
-def settled(lattice: Nodes, fracture: Fracture, evaluate: Callable[[Nodes, int], np.ndarray]) -> Nodes:
+def settled(
+    lattice: Nodes, fracture: Fracture, evaluate: Callable[[Nodes, int], np.ndarray], times: float = 1.0
+) -> Nodes:
     """Add nodes to a lattice where interpolation is in doubt, and several for an element where light changes steeply.
 
     Parameters
@@ -229,25 +231,27 @@ def settled(lattice: Nodes, fracture: Fracture, evaluate: Callable[[Nodes, int],
     fracture : Fracture
     evaluate : callable(nodes, first) -> (m, g) float
         Finds values at the nodes from ``first`` on, and gives those of all: several kinds of light, none negative.
+    times : float
+        How many times finer than usual.
 
     Returns
     -------
     Nodes
     """
     nodes, values = lattice, evaluate(lattice, 0)
-    doubtful = np.flatnonzero(nodes.doubt(values) > DOUBT)
+    doubtful = np.flatnonzero(nodes.doubt(values) > DOUBT / times)
     if len(doubtful):
         first = len(nodes.points)
         nodes = nodes.with_own(doubtful, fracture.elements[doubtful].mean(axis=1))
         values = evaluate(nodes, first)
-    pieces = _Pieces.steep(nodes, values, fracture)
+    pieces = _Pieces.steep(nodes, values, fracture, STEEP / times)
     for _ in range(_MOST_SPLITS):
         if not len(pieces.node):
             break
         first = len(nodes.points)
         nodes, pieces = nodes.with_split(pieces)
         values = evaluate(nodes, first)
-        pieces = pieces.uneven(values, nodes.weights.apply(values).sum(axis=1))
+        pieces = pieces.uneven(values, nodes.weights.apply(values).sum(axis=1), STEEP / times)
     return nodes
 
 
@@ -269,7 +273,7 @@ class _Pieces:
     share: np.ndarray
 
     @classmethod
-    def steep(cls, nodes: Nodes, values: np.ndarray, fracture: Fracture) -> _Pieces:
+    def steep(cls, nodes: Nodes, values: np.ndarray, fracture: Fracture, steep: float) -> _Pieces:
         """Elements with one receiver of their own that the other half of their cell differs much from."""
         own, here = np.diff(nodes.weights.start) == 1, nodes.weights.apply(values)
         total = here.sum(axis=1)
@@ -278,8 +282,8 @@ class _Pieces:
         for grid in fracture.grids:
             pair = here[grid.elements].reshape(-1, 2, here.shape[1])
             apart = np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0)
-            steep = np.repeat(apart, 2) > STEEP * total[grid.elements]
-            found.append(grid.first + np.flatnonzero(steep & own[grid.elements]))
+            unlike = np.repeat(apart, 2) > steep * total[grid.elements]
+            found.append(grid.first + np.flatnonzero(unlike & own[grid.elements]))
         element = np.concatenate(found)
         node = nodes.weights.node[nodes.weights.start[element]]
         return cls(fracture.elements[element], element, node, np.ones(len(element)))
@@ -299,11 +303,11 @@ class _Pieces:
             np.repeat(0.25 * self.share, 4),
         )
 
-    def uneven(self, values: np.ndarray, total: np.ndarray) -> _Pieces:
+    def uneven(self, values: np.ndarray, total: np.ndarray, most: float) -> _Pieces:
         """Of pieces split last, those that still differ among each other by more than their element can bear."""
         four = values[self.node].reshape(-1, 4, values.shape[1])
         apart = np.abs(four[:, 1:] - four[:, :1]).max(axis=(1, 2), initial=0.0)
-        bearable = STEEP * np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))[self.element[::4]]
+        bearable = most * np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))[self.element[::4]]
         mine = np.repeat(4 * self.share[::4] * apart > bearable, 4)
         return _Pieces(self.triangle[mine], self.element[mine], self.node[mine], self.share[mine])
 

@@ -168,6 +168,11 @@ class Result:
         errors = estimate_errors(self.transfer, self.light, self.sky, self.field)
         return cuts.side_means(errors)[: len(cuts.faces)]
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is odd about the scene: surfaces that lie on one another, a room turned inside out."""
+        return self.transfer.geometry.planes.notes
+
     def faces_of(self, name: str) -> np.ndarray:
         """(k,) int: faces of a surface.
 

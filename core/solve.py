@@ -269,7 +269,7 @@ def _gather_bright(transfer: Transfer, sources: list[Source], deep: np.ndarray, 
         done = begun + share
         return found[:, None]
 
-    nodes = settled(transfer.lattice, geometry.fracture, evaluate)
+    nodes = settled(transfer.lattice, geometry.fracture, evaluate, transfer.times)
     by_many = np.zeros(len(transfer.nodes.points))
     by_many[transfer.deep_rows] = product(transfer.deep_factors, deep)
     return nodes.on_elements(found) + transfer.on_elements(by_many)
@@ -310,8 +310,8 @@ def _spread(transfer: Transfer, illuminance: np.ndarray) -> np.ndarray:
     return spread / max(float(transfer.conservation.kept @ spread), 1e-300)
 
 
-def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Field) -> np.ndarray:
-    """(e,) float: what the errors of elements' illuminances are about below, 95 of 100 of them [lx]."""
+def globe_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Field) -> np.ndarray:
+    """(e,) float: relative errors that the globe's fineness causes, 95 of 100 are about below."""
     trial, nodes = transfer.trial, transfer.nodes
     exitance = field.patch_exitance + field.patch_emitted
     mirrored = np.isin(trial.nodes, transfer.specular_rows)
@@ -322,10 +322,15 @@ def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field:
     ours[mirrored] += np.pi * product(transfer.sky_specular[rows], sky)
     coarser = np.pi * product(trial.sky, sky_column(trial.targets, light)) + product(trial.patches, exitance)
     sheets = 2 * len(transfer.geometry.planes.sheet_surface)
-    relative = relative_errors(trial, nodes.sheet, ours, coarser, sheets)[nodes.element_sheet]
+    return relative_errors(trial, nodes.sheet, ours, coarser, sheets)[nodes.element_sheet]
+
+
+def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Field) -> np.ndarray:
+    """(e,) float: what the errors of elements' illuminances are about below, 95 of 100 of them [lx]."""
     total = sum(field.components.values())
     exact = field.components["sun_direct"] + field.components["sun_specular"] + field.components["emitted"]
-    return (relative + OF_DOUBT * transfer.unsure) * (total - exact) + LEAST * total
+    relative = globe_errors(transfer, light, sky, field) + OF_DOUBT * transfer.unsure
+    return relative * (total - exact) + LEAST * total
 
 
 def product(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:

@@ -54,6 +54,15 @@ class Recorder:
         self.stages.append(Stage(name, time.perf_counter() - start))
         logger.debug("%s: %.3f s", name, self.stages[-1].seconds)
 
+    def part(self, first: float, last: float) -> Progress:
+        """Progress of a step that covers a stretch of the whole run."""
+
+        def report(fraction: float, name: str) -> bool:
+            self.report(first + (last - first) * fraction, name)
+            return True
+
+        return report
+
     def skip(self, name: str, why: str) -> None:
         """Note a stage that the scene does not need."""
         self.stages.append(Stage(name, 0.0, why))

@@ -8,14 +8,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .daylight import Daylight
 from .errors import SceneError
 from .estimate import Trial, make_trial
-from .form_factors import Conservation, Exchange, gather_nodes, kinds_of_light, patch_means
+from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
+from .form_factors import Conservation, Exchange, gather_nodes, patch_means
 from .geometry import Geometry, make_geometry
 from .globe import Globe
 from .nodes import Nodes
 from .planes import find_planes
 from .scene import Scene
+from .sky import UniformSky
 from .specular import ChainLimits, exact_mirrors
 from .stages import Progress, Recorder, Stage
 
@@ -36,6 +39,8 @@ class Transfer:
     unsure : (e,) float
         What interpolation between nodes leaves open, over all light.
     conservation : Conservation
+    times : float
+        How many times finer than usual the scene is resolved.
     form_factors : (m, p) float32
         From each node (receiver) to each patch.
     sky_direct : (m, c) float32
@@ -71,6 +76,7 @@ class Transfer:
     trial: Trial
     unsure: np.ndarray
     conservation: Conservation
+    times: float
     limits: ChainLimits
     threads: int
     stages: tuple[Stage, ...] = field(default=())
@@ -83,6 +89,14 @@ class Transfer:
     def on_elements(self, values: np.ndarray) -> np.ndarray:
         """Values on the elements ``(e,)`` from values at the nodes ``(m,)``."""
         return self.nodes.on_elements(values)
+
+    def errors_by_globe(self) -> np.ndarray:
+        """(e,) float: relative errors that the globe's fineness causes, as estimated under an even sky."""
+        from .solve import globe_errors
+
+        light = Daylight(sky=UniformSky(1000.0))
+        result = self.solve(light, tolerance=1e-2)
+        return globe_errors(self, light, result.sky, result.field)
 
     def solve(self, light, *, tolerance: float = 1e-4, cycles: int | None = None, progress: Progress | None = None):
         """Illuminance for one sky and Sun.
@@ -121,6 +135,7 @@ def prepare(
     specular_cutoff: float = 1e-3,
     threads: int | None = None,
     memory: float | None = None,
+    accuracy: float | None = None,
     progress: Progress | None = None,
 ) -> Transfer:
     """Find everything that geometry and materials decide.
@@ -139,6 +154,10 @@ def prepare(
         Default: as many as the machine has cores.
     memory : float, optional
         Most bytes that the transfer may hold.
+    accuracy : float, optional
+        Relative error that about 95 of 100 faces shall keep below, 0.001 to 0.2 (see `Result.error`). Bands, receivers,
+        patches and, where ``max_area`` is not given, faces are then chosen for it from a trial solution; ``bands`` has
+        no meaning.
     progress : callable(fraction, stage_name) -> bool, optional
         True to go on, False to cancel.
 
@@ -154,21 +173,44 @@ def prepare(
         Where ``progress`` says so.
     """
     max_area, specular_cutoff, threads, memory = _checked_options(scene, max_area, specular_cutoff, threads, memory)
-    globe = Globe.cut_at_horizon(bands)  # a parcel is sky or ground, never both
+    accuracy = _checked_accuracy(accuracy)
+    Globe(bands)  # refused before any work
     recorder = Recorder(progress)
+    common = (max_area, specular_cutoff, threads, memory)
+    if accuracy is None:
+        return _prepared(scene, bands, 1.0, *common, recorder)
+    times = times_for(accuracy)
+    with recorder.stage("trial solution", 0.0):
+        trial = _prepared(scene, TRIAL_BANDS, min(times, TRIAL_TIMES), *common, Recorder(recorder.part(0.0, 0.2)))
+        bands = bands_for(accuracy, TRIAL_BANDS, trial.errors_by_globe(), trial.geometry.fracture.element_areas)
+    return _prepared(scene, bands, times, *common, Recorder(recorder.part(0.2, 1.0), recorder.stages))
+
+
+def _prepared(
+    scene: Scene,
+    bands: int,
+    times: float,
+    max_area: float | None,
+    specular_cutoff: float,
+    threads: int,
+    memory: float | None,
+    recorder: Recorder,
+) -> Transfer:
+    """See `prepare`: all that follows once the fineness is known."""
+    globe = Globe.cut_at_horizon(bands)  # a parcel is sky or ground, never both
     with recorder.stage("planes", 0.0):
         planes = find_planes(scene)
     with recorder.stage("fracture", 0.01):
-        geometry = make_geometry(scene, planes, globe, max_area)
+        geometry = make_geometry(scene, planes, globe, max_area, times)
+    limits = ChainLimits(specular_cutoff, exact_mirrors(geometry.outlines))
     _check_memory(geometry, memory)
     stage = "visibility and form factors"
     with recorder.stage(stage, 0.02):
-        limits = ChainLimits(specular_cutoff, exact_mirrors(geometry.outlines))
         lattice, nodes, gathered = gather_nodes(
-            geometry, limits, threads, lambda done: recorder.report(0.02 + 0.95 * done, stage)
+            geometry, limits, times, threads, lambda done: recorder.report(0.02 + 0.95 * done, stage)
         )
         trial = make_trial(geometry, nodes, limits, threads, lambda done: recorder.report(0.97 + 0.02 * done, stage))
-        unsure = nodes.unsure(kinds_of_light(geometry, gathered), geometry.fracture)
+        unsure = nodes.unsure(gathered.kinds_of_light(geometry), geometry.fracture)
         conservation = Conservation.of(geometry, nodes, gathered)
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
@@ -198,6 +240,7 @@ def prepare(
         trial=trial,
         unsure=unsure,
         conservation=conservation,
+        times=times,
         limits=limits,
         threads=threads,
         stages=tuple(recorder.stages),
@@ -221,6 +264,15 @@ def _checked_options(scene, max_area, specular_cutoff, threads, memory):
     if memory is not None:
         memory = _positive("memory", memory, infinite=True)
     return max_area, cutoff, int(threads), memory
+
+
+def _checked_accuracy(accuracy) -> float | None:
+    if accuracy is None:
+        return None
+    number = _positive("accuracy", accuracy)
+    if not 1e-3 <= number <= 0.2:
+        raise SceneError(f"accuracy is {number:g}; give a relative error from 0.001 to 0.2 (0.01 is usual)")
+    return number
 
 
 def _positive(name: str, value, infinite: bool = False) -> float:
