@@ -410,7 +410,7 @@ def _left_out(lines: np.ndarray):
 def _lines(count: int) -> np.ndarray:
     """Places of the lines of nodes along a stretch, in cells: close at its ends, wider and wider towards its middle."""
     if count == 1:
-        return np.array([0.5])
+        return np.array([_BESIDE, 1 - _BESIDE])
     most = max(3, count // _SPACES)
     half, middle = [0], (count - 1) / 2
     while half[-1] + 1 <= middle:

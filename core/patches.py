@@ -10,7 +10,7 @@ import numpy as np
 from .layout import Layout
 from .planes import Planes
 
-_WIDEST = 1.5
+_WIDEST = 1.0
 """Side of the widest patch of a run, over that of a patch of average area."""
 
 _GROWTH = 0.4

@@ -125,7 +125,7 @@ def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> tupl
 
 
 def _remarks_of_solver(study: Study, result: luz.Result) -> list[Notice]:
-    texts = [solver_message(note) for note in result.transfer.geometry.planes.notes]
+    texts = [solver_message(note) for note in result.notes]
     for surface in study.export.scene.surfaces.values():
         for note in surface.notes:
             texts.append(rpt_("Surface '{name}': {remark}").format(name=surface.name, remark=solver_message(note)))

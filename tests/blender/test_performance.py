@@ -46,6 +46,7 @@ def result_of(export):
         faces_of=lambda name: np.arange(len(triangles)),
         illuminance=values,
         areas=front.areas,
+        notes=(),
     )
 
 

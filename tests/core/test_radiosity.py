@@ -175,15 +175,17 @@ def test_interreflection_is_the_series_of_the_transfer(reflectances, cycles):
         assert not result.components["interreflected"].any()
         return
     cuts, patch = transfer.geometry.fracture, transfer.geometry.targets.patches.of_element
-    initial = np.pi * 1000 * transfer.sky_direct[:, :-1].sum(axis=1)
+    initial = np.pi * 1000 * transfer.on_elements(transfer.sky_direct[:, :-1].sum(axis=1))
     area = np.bincount(patch[patch >= 0], weights=cuts.element_areas[patch >= 0])
     mean = np.bincount(patch[patch >= 0], weights=(cuts.element_areas * initial)[patch >= 0]) / area
     rho = np.zeros(len(area))
     surface_rho = np.array([m.diffuse_reflectance for m in transfer.geometry.surface_materials])
     rho[patch[patch >= 0]] = surface_rho[transfer.geometry.element_surface[patch >= 0]]
-    expected = np.zeros(len(initial))
+    expected = np.zeros(len(transfer.nodes.points))
     if cycles:
         exitance = rho * radiosity.by_cycles(transfer.exchange, rho, mean, cycles - 1)
         expected = transfer.form_factors @ exitance
         expected += transfer.conservation.spread * (transfer.conservation.missing @ exitance)
-    np.testing.assert_allclose(result.components["interreflected"], cuts.side_means(expected), rtol=1e-5, atol=1e-4)
+    np.testing.assert_allclose(
+        result.components["interreflected"], cuts.side_means(transfer.on_elements(expected)), rtol=1e-5, atol=1e-4
+    )

@@ -254,6 +254,7 @@ def test_single_rays_see_what_shared_views_see(monkeypatch):
     one, other = shared.solve(CLEAR), single.solve(CLEAR)
     for name in ("south", "ceiling", "east", "west", "floor"):
         assert other.mean(name) == pytest.approx(one.mean(name), rel=0.02)
-    np.testing.assert_allclose(shared.form_factors.sum(axis=1), single.form_factors.sum(axis=1), atol=0.02)
-    assert (shared.form_factors != single.form_factors).any(), "two ways"
+    one, other = (t.on_elements(t.form_factors.sum(axis=1)) for t in (shared, single))
+    np.testing.assert_allclose(one, other, atol=0.02)
+    assert not np.array_equal(one, other), "two ways"
     assert math.isclose(shared.truncated.sum(), single.truncated.sum(), abs_tol=0.02 * len(shared.truncated))

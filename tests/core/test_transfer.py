@@ -70,7 +70,7 @@ def test_dark_backs_are_unlit():
     dark = light["out"] if light["out"].unlit.any() else light["in"]
     seen = dark.form_factors.sum(axis=1) + dark.unlit + dark.sky_direct.sum(axis=1)
     np.testing.assert_allclose(seen, 1, atol=1e-5)
-    assert 0.1 < dark.unlit[dark.geometry.element_surface == 0].mean() < 0.4
+    assert 0.1 < dark.unlit[dark.geometry.element_surface[dark.nodes.element] == 0].mean() < 0.4
 
 
 def test_form_factors_are_reciprocal():
@@ -79,7 +79,12 @@ def test_form_factors_are_reciprocal():
     cuts, patch = transfer.geometry.fracture, transfer.geometry.targets.patches.of_element
     area = np.bincount(patch, weights=cuts.element_areas)
     exchange = area[:, None] * transfer.patch_factors
-    assert np.abs(exchange - exchange.T).sum() / exchange.sum() < 0.02
+    # some parcels wide, so that it does not matter which of two neighbours a beam's centre meets
+    middle = np.stack([np.bincount(patch, weights=cuts.element_areas * x) / area for x in cuts.elements.mean(axis=1).T])
+    block = np.unique(np.floor(middle).T, axis=0, return_inverse=True)[1].reshape(-1)
+    blocks = np.zeros((block.max() + 1, block.max() + 1))
+    np.add.at(blocks, (block[:, None], block[None, :]), exchange)
+    assert np.abs(blocks - blocks.T).sum() / blocks.sum() < 0.02
     surface = np.zeros(len(area), int)
     surface[patch] = transfer.geometry.element_surface
     between = np.array([[exchange[np.ix_(surface == a, surface == b)].sum() for b in range(6)] for a in range(6)])
@@ -92,7 +97,8 @@ def test_patch_factors_are_means_over_elements():
     patch, area = transfer.geometry.targets.patches.of_element, transfer.geometry.fracture.element_areas
     for number in range(0, transfer.geometry.targets.patches.count, 7):
         mine = patch == number
-        mean = np.average(transfer.form_factors[mine], axis=0, weights=area[mine])
+        rows = transfer.nodes.weights.apply(transfer.form_factors.astype(float))[mine]
+        mean = np.average(rows, axis=0, weights=area[mine])
         np.testing.assert_allclose(transfer.patch_factors[number], mean, rtol=1e-4, atol=1e-7)
 
 

@@ -29,7 +29,7 @@ def transfers(light_shelf):
     def transfer(variant):
         if variant not in prepared:
             scene = light_shelf.scene(variant)
-            prepared[variant] = prepare_coarse(scene, elements=2000, patches=2000, bands=40)
+            prepared[variant] = prepare_coarse(scene, elements=6000, patches=2000, bands=40)
         return prepared[variant]
 
     return transfer

@@ -194,7 +194,7 @@ def test_even_field_in_closed_solids(name):
 )
 def test_interreflection(name, rms, most):
     case, expected = CASES[name], CASES[name]["expected"]
-    result = transfer_of(case, elements=2000, patches=1200, bands=40).solve(daylight(case), tolerance=1e-6)
+    result = transfer_of(case, elements=5000, patches=2500, bands=40).solve(daylight(case), tolerance=1e-6)
     sunny = "sun" in case["light"]
     got = dict(zip(expected["E_lx"], at(case, result, expected["E_lx"]), strict=True))
     # a sun patch is a hundred times brighter than the rest: there each value is compared with itself
