@@ -48,6 +48,70 @@ def test_an_even_closed_box_closes_to_a_millionth():
     assert balance.entering == pytest.approx(100 * 27)
 
 
+@pytest.mark.parametrize("rho", [0.0, 0.5, 0.9, 0.99, 0.999])
+def test_a_closed_box_balances_exactly_however_white(rho):
+    """One bright side: what means over patches are out by is made up for, and told."""
+    grey, lamp = luz.Material(diffuse_reflectance=rho), luz.Material(diffuse_reflectance=rho, exitance=100.0)
+    transfer = prepare_coarse(box(grey, (3, 2, 1.5), ceiling=lamp), elements=50, max_area=0.05)
+    balance = transfer.solve(DARK, tolerance=1e-9).balance
+    assert abs(balance.defect) < 1e-9
+    assert balance.entering == pytest.approx(600)
+    assert sum(balance.absorbed.values()) == pytest.approx(600, rel=1e-9)
+    assert 1e-5 < balance.adjusted < 0.02
+
+
+L_SHAPE = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], float)
+TETRAHEDRON = np.array([[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]], float)
+
+
+def closed_solid(name, material):
+    scene = luz.Scene()
+    if name == "tetrahedron":
+        for k in range(4):
+            corners = np.delete(TETRAHEDRON, k, axis=0)
+            normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+            scene.add(f"side {k}", corners if normal @ corners[0] < 0 else corners[::-1], material)
+        return scene
+    floor = np.c_[L_SHAPE, np.zeros(6)]
+    scene.add("floor", floor, material)
+    up = np.array([0, 0, 1.2])
+    scene.add("ceiling", floor[::-1] + up, material)
+    for k, (a, b) in enumerate(zip(floor, np.roll(floor, -1, axis=0), strict=True)):
+        scene.add(f"wall {k}", [a, a + up, b + up, b], material)
+    return scene
+
+
+@pytest.mark.parametrize("name", ["tetrahedron", "L-shaped room"])
+@pytest.mark.parametrize("rho", [0.5, 0.999])
+def test_even_light_in_closed_solids_stays_even(name, rho):
+    """M / (1 - rho) at every face, and partial sums by cycles: what evens out the balance does not touch it."""
+    scene = closed_solid(name, luz.Material(diffuse_reflectance=rho, exitance=100.0))
+    transfer = prepare_coarse(scene, elements=100, max_area=0.1)
+    result = transfer.solve(DARK, tolerance=1e-9)
+    np.testing.assert_allclose(result.illuminance, 100 / (1 - rho), rtol=1e-6)
+    assert abs(result.balance.defect) < 1e-9 and result.balance.adjusted < 1e-4
+    np.testing.assert_allclose(
+        transfer.solve(DARK, cycles=3).illuminance, 100 * sum(rho**k for k in range(4)), rtol=1e-6
+    )
+
+
+@pytest.mark.parametrize("rho", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize("light", [UNIFORM, LIGHT], ids=["uniform", "clear with Sun"])
+def test_open_rooms_balance_to_a_thousandth(rho, light):
+    """What is trusted the more, what stays or what escapes, leaves less than was out before."""
+    transfer = prepare_coarse(
+        box(luz.Material(diffuse_reflectance=rho), (3, 3, 3), without=("north",)), elements=50, max_area=0.1
+    )
+    balance = transfer.solve(light, tolerance=1e-7).balance
+    assert abs(balance.defect) < 1e-3
+    assert abs(balance.defect) < balance.adjusted < 0.02
+
+
+def test_nothing_is_made_up_for_where_nothing_is_reflected():
+    balance = prepare_coarse(box(BLACK, without=("north",)), elements=50, max_area=0.05).solve(UNIFORM).balance
+    assert balance.adjusted == 0
+
+
 def test_daylight_of_an_open_room():
     """What lands enters; what is reflected out of the opening escapes."""
     result = prepare_coarse(

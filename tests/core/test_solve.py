@@ -78,6 +78,36 @@ def test_lights_add_up(unlit, dni, horizontal, altitude, azimuth):
     )
 
 
+@pytest.mark.parametrize("cycles", [0, 1, 4])
+def test_lights_add_up_to_the_last_digit(unlit, cycles):
+    """Made to add up, lumens of two lights are those of each: nothing in between depends on how bright it is."""
+    one, two, both = (
+        unlit.solve(luz.Daylight(sky=a, sun=b), cycles=cycles).illuminance
+        for a, b in ((SKY, None), (None, SUN), (SKY, SUN))
+    )
+    np.testing.assert_allclose(both, one + two, rtol=1e-9)
+
+
+def test_lamps_of_a_closed_box_scale_to_the_last_digit():
+    """Where receivers are added does not ask how bright a lamp is, nor does what is made up for."""
+
+    def lit(exitance):
+        lamp = luz.Material(diffuse_reflectance=0.7, exitance=exitance)
+        scene = box(WHITE, (3, 2, 2.5), ceiling=lamp)
+        return prepare_coarse(scene, elements=50, max_area=0.2).solve(DARK, tolerance=1e-12).illuminance
+
+    np.testing.assert_allclose(lit(3e4), 1e4 * lit(3.0), rtol=1e-9)
+
+
+def test_all_cycles_of_an_open_room_add_up(unlit):
+    """Less exactly: how far what stays is trusted depends on how much of this light escapes."""
+    one, two, both = (
+        unlit.solve(luz.Daylight(sky=a, sun=b), tolerance=1e-10).illuminance
+        for a, b in ((SKY, None), (None, SUN), (SKY, SUN))
+    )
+    np.testing.assert_allclose(both, one + two, rtol=1e-4)
+
+
 def test_lamps_and_daylight_add_up(transfer, unlit):
     day, lamp = unlit.solve(BOTH, tolerance=1e-7), transfer.solve(DARK, tolerance=1e-7)
     both = transfer.solve(BOTH, tolerance=1e-7)

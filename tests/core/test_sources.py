@@ -2,10 +2,11 @@
 
 import math
 import sys
+import time
 
 import numpy as np
 import pytest
-from builders import BLACK, DARK, box_polygons, cosine_rays, first_hits, flux, prepare_coarse
+from builders import BLACK, DARK, box, box_polygons, cosine_rays, first_hits, flux, prepare_coarse
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -266,3 +267,34 @@ def test_many_lamps_go_by_the_globe(monkeypatch):
         assert globe.mean(name) == pytest.approx(exact.mean(name), rel=0.01, abs=0.01)
     np.testing.assert_allclose(globe.at(points, normals), exact.at(points, normals), rtol=0.02)
     assert abs(globe.at(points, normals) - exact.at(points, normals)).max() > 0, "two ways"
+
+
+def mirror_box(share=0.8):
+    """Six luminous mirrors that look at each other."""
+    return box(luz.Material(specular_reflectance=share, diffuse_reflectance=0.1, exitance=100.0), (1, 1.3, 0.9))
+
+
+def test_luminous_mirrors_of_a_box_can_be_cancelled_soon():
+    """Images in images in images: seconds of work in one chunk, which asks now and then whether to go on."""
+    transfer = prepare_coarse(mirror_box(), elements=60, patches=20, bands=4, specular_cutoff=1e-2)
+    for work in (
+        lambda progress: prepare_coarse(mirror_box(), elements=2000, bands=40, threads=1, progress=progress),
+        lambda progress: transfer.solve(DARK, progress=progress),
+    ):
+        begin = time.perf_counter()
+        with pytest.raises(luz.Cancelled):
+            work(lambda fraction, stage: time.perf_counter() - begin < 0.3)  # noqa: B023
+        assert time.perf_counter() - begin < 2.3
+
+
+def test_images_by_many_mirrors_come_by_the_globe():
+    """An even closed field between six mirrors, M / (1 - rho_d - rho_s): exact images alone would miss most of it."""
+    transfer = prepare_coarse(mirror_box(0.7), elements=30, patches=40, bands=12, specular_cutoff=1e-2)
+    assert transfer.limits.exact_mirrors == 3 and len(transfer.deep_rows) > 0
+    result = transfer.solve(DARK, cycles=0)
+    initial = 100 / (1 - 0.7)
+    np.testing.assert_allclose(result.illuminance, initial * (1 - 0.7**14), rtol=0.03)
+    exact_alone = 100 * (1 - 0.7**4) / (1 - 0.7)
+    assert result.illuminance.min() > 1.2 * exact_alone
+    points, normals = [[0.5, 0.6, 0], [0.2, 1.1, 0]], [UP, UP]
+    np.testing.assert_allclose(result.at(points, normals), initial * (1 - 0.7**14), rtol=0.03)

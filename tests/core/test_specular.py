@@ -7,6 +7,10 @@ import pytest
 from builders import BLACK, DARK, UNIFORM, box, box_polygons, cosine_rays, prepare_coarse, scene_of
 
 import luzespecular as luz
+from luzespecular.geometry import make_geometry
+from luzespecular.globe import Globe
+from luzespecular.planes import find_planes
+from luzespecular.specular import ChainLimits, exact_mirrors
 
 UP, DOWN, NORTH, SOUTH = np.array([[0, 0, 1.0], [0, 0, -1], [0, 1, 0], [0, -1, 0]])
 CLEAR = luz.Daylight(sky=luz.CIESky(12, sun_altitude=40, sun_azimuth=130, horizontal_illuminance=10_000))
@@ -242,6 +246,39 @@ def test_no_mirror_no_chains():
     skipped = {s.name: s.skipped for s in stages}
     assert skipped["specular chains"] == "no surface mirrors or transmits regularly"
     assert not {s.name: s.skipped for s in prepare_coarse(box(BLACK, floor=mirror(0.5))).stages}.get("specular chains")
+
+
+@pytest.mark.parametrize(
+    ("mirrors", "deepest"),
+    [(0, 40), (1, 40), (2, 40), (3, 4), (4, 3), (6, 3), (7, 2), (10, 1), (100, 1)],
+)
+def test_how_many_mirrors_are_looked_into_one_by_one(mirrors, deepest):
+    """Two facing mirrors: all images to the cut-off. A box: the first 62. More tiles of mirror: each, once."""
+    plate = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    scene = luz.Scene()
+    for k in range(mirrors):
+        scene.add(f"mirror {k}", plate + 0.01 * k * UP, mirror(0.9))
+    scene.add("grey", plate + DOWN, luz.Material(diffuse_reflectance=0.5))
+    assert exact_mirrors(make_geometry(scene, find_planes(scene), Globe(4), math.inf).outlines) == deepest
+
+
+def test_sightings_of_few_and_of_many_mirrors_are_told_apart():
+    limits = ChainLimits(exact_mirrors=3)
+    assert limits.kind(np.arange(7)).tolist() == [0, 1, 1, 1, 4, 4, 4]
+    assert ChainLimits(exact_mirrors=1).kind(np.arange(4)).tolist() == [0, 1, 2, 2]
+
+
+def test_no_light_leaks_at_the_edges_of_mirrors():
+    """A closed box of which one, two, three sides are mirrors: no sky, and rows of the form factors make one."""
+    grey = luz.Material(diffuse_reflectance=0.5)
+    for mirrors in (("floor",), ("floor", "west"), ("floor", "west", "south")):
+        transfer = prepare_coarse(
+            box(grey, (2, 1.5, 1.2), **{name: mirror(1.0) for name in mirrors}), elements=60, patches=60
+        )
+        assert transfer.sky_direct.sum(axis=1).max() < 1e-6
+        assert transfer.sky_specular.sum(axis=1).max() < 2e-5
+        np.testing.assert_allclose(transfer.form_factors.sum(axis=1) + transfer.truncated, 1, atol=1e-4)
+        assert transfer.solve(UNIFORM).illuminance.max() < 0.2, "of 3142 lx outside"
 
 
 def test_single_rays_see_what_shared_views_see(monkeypatch):
