@@ -94,7 +94,7 @@ def test_known_answers_lie_within_the_stated_error():
     assert np.median(places) > 0.03, "and it is no empty promise: errors are not told a hundred times too large"
 
 
-@pytest.mark.xfail(reason="short stretches of a lattice are never in doubt, and means over areas err more than is told")
+@pytest.mark.xfail(reason="beside a mirror shelf means over coarse faces err by more than is told")
 def test_faces_lie_within_the_stated_error():
     """Faces of a room with a mirror shelf against means over them of what is seen on a finer globe."""
     options = {"elements": 50, "max_area": 0.01}
@@ -118,10 +118,12 @@ def transfers():
 
 
 def test_the_error_falls_with_the_bands(transfers):
+    """The globe's part of it the faster; what interpolation leaves open stays."""
     for light in (UNIFORM, luz.Daylight(sky=CLEAR)):
         told = [np.median(t.solve(light).error / t.solve(light).illuminance) for t in transfers.values()]
-        assert told[0] > 1.3 * told[1] > 1.3 * 1.5 * told[2]
-        assert told[0] < 0.2
+        assert 0.1 > told[0] > 1.3 * told[1] > 1.3**2 * told[2]
+    by_globe = [np.median(t.errors_by_globe()) for t in transfers.values()]
+    assert by_globe[0] > 1.3 * by_globe[1] > 1.3 * 1.6 * by_globe[2]
 
 
 def test_an_error_for_every_face(transfers):
@@ -147,7 +149,7 @@ def test_what_is_exact_is_told_so(transfers):
     lamp = coarse(box(BLACK, ceiling=luz.Material(exitance=100.0))).solve(DARK)
     np.testing.assert_allclose(lamp.error, LEAST * lamp.illuminance, rtol=1e-9)
     even = coarse(box(luz.Material(diffuse_reflectance=0.5, exitance=100.0))).solve(DARK)
-    assert (even.error < 2e-3 * even.illuminance).all(), "an even field has no edges to err at"
+    assert (even.error < 5e-3 * even.illuminance).all(), "an even field has no edges to err at"
 
 
 def test_an_open_plane():

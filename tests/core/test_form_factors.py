@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from layout_samples import triangle_rule
 
 import luzespecular as luz
-from luzespecular.form_factors import Conservation, Rows, kinds_of_light, patch_means, trusted
+from luzespecular.form_factors import Conservation, Rows, patch_means, trusted
 from luzespecular.solve import gather_patches
 
 WHITE = luz.Material(diffuse_reflectance=0.5)
@@ -56,7 +56,7 @@ def weights_of(nodes):
 @pytest.mark.parametrize("columns", [1, 7, None])
 def test_means_over_patches_are_those_of_their_elements(open_room, columns):
     geometry, nodes = open_room.geometry, open_room.nodes
-    assert len(nodes.points) < 0.9 * len(geometry.fracture.elements), "the nodes are not the elements"
+    assert len(nodes.points) != len(geometry.fracture.elements), "the nodes are not the elements"
     values = open_room.form_factors[:, :columns]
     on_elements = weights_of(nodes) @ values
     patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
@@ -79,7 +79,7 @@ def test_a_scene_without_patches_has_no_means():
 def test_kinds_of_light_share_out_what_nodes_see(name, request):
     """Four blended sides of the sky make the whole; surfaces count by about how bright they will be."""
     transfer = request.getfixturevalue(name)
-    kinds = kinds_of_light(transfer.geometry, rows_of(transfer))
+    kinds = rows_of(transfer).kinds_of_light(transfer.geometry)
     assert (kinds >= 0).all() and len(kinds) == len(transfer.nodes.points)
     sky = transfer.sky_direct.sum(axis=1, dtype=float)
     sky[transfer.specular_rows] += transfer.sky_specular.sum(axis=1)
@@ -91,7 +91,7 @@ def test_kinds_of_light_share_out_what_nodes_see(name, request):
 
 def test_sides_of_the_sky_are_told_apart(open_room):
     """The west wall sees the sky to the east and north of it."""
-    kinds = kinds_of_light(open_room.geometry, rows_of(open_room))[:, :4]
+    kinds = rows_of(open_room).kinds_of_light(open_room.geometry)[:, :4]
     surface = open_room.geometry.element_surface[open_room.nodes.element]
     names = open_room.geometry.planes.surfaces
     east, west, north, south = kinds[surface == names.index("west")].mean(axis=0)

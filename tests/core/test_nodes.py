@@ -44,9 +44,8 @@ def test_weights_sum_to_one(made):
     assert len(nodes.weights.start) - 1 == len(geometry.fracture.elements)
 
 
-def test_nodes_are_few_and_lie_on_their_elements(made):
+def test_nodes_lie_on_their_elements(made):
     geometry, nodes = made
-    assert len(nodes.points) < 0.95 * len(geometry.fracture.elements)
     centre = geometry.element_points[nodes.element]
     away = np.linalg.norm(nodes.points - centre, axis=1)
     assert away[wall_of(geometry)[nodes.element]].max() < CELL
@@ -56,42 +55,40 @@ def test_nodes_are_few_and_lie_on_their_elements(made):
 
 
 def test_light_that_changes_evenly_is_reproduced(made):
-    """But across a stretch of one cell, which has one node to tell of it."""
     geometry, nodes = made
-    cell = np.abs(nodes.weights.apply(nodes.points) - geometry.element_points)
-    assert cell.max() < CELL / 3 + 1e-9
-    narrow = np.zeros(len(cell), bool)
-    for layout in geometry.lattices:
-        rows, columns = layout.grid.rows, layout.grid.columns
-        alone = np.zeros((rows, columns), bool)
-        for first, cells in layout.stretches[0]:
-            alone[first : first + cells] |= cells == 1
-        for first, cells in layout.stretches[1]:
-            alone[:, first : first + cells] |= cells == 1
-        narrow[layout.grid.elements] = np.repeat((alone & ~layout.cut).ravel(), 2)
-    np.testing.assert_allclose(cell[~narrow], 0, atol=1e-12)
-    assert narrow.mean() < 0.4
+    np.testing.assert_allclose(nodes.weights.apply(nodes.points), geometry.element_points, atol=1e-6)
+
+
+def power_means(corners, power):
+    """Mean of x to a power over triangles, from x at their corners ``(k, 3)``: an exact sum of products."""
+    total = sum(
+        corners[:, 0] ** i * corners[:, 1] ** j * corners[:, 2] ** (power - i - j)
+        for i in range(power + 1)
+        for j in range(power + 1 - i)
+    )
+    return 2 * total / ((power + 1) * (power + 2))
 
 
 @pytest.mark.parametrize("axis", [0, 2])
-def test_a_cubic_along_one_axis_is_reproduced(axis):
+def test_means_of_a_cubic_along_one_axis_are_reproduced(axis):
+    """Elements' values are means over their area, not values at their centroids."""
     geometry = geometry_of(wall())
     nodes = nodes_of(geometry)
-    place = [geometry.element_points[:, axis], nodes.points[:, axis]]
-    exact, told = (2 - x + 3 * x**2 - 4 * x**3 for x in place)
-    np.testing.assert_allclose(nodes.weights.apply(told), exact, atol=1e-12)
-    exact, told = (x**4 for x in place)
-    assert np.abs(nodes.weights.apply(told) - exact).max() > 1e-6, "no more than that"
+    corners, place = geometry.fracture.elements[:, :, axis], nodes.points[:, axis]
+    exact = 2 - power_means(corners, 1) + 3 * power_means(corners, 2) - 4 * power_means(corners, 3)
+    np.testing.assert_allclose(nodes.weights.apply(2 - place + 3 * place**2 - 4 * place**3), exact, atol=1e-12)
+    assert np.abs(nodes.weights.apply(place**4) - power_means(corners, 4)).max() > 1e-6, "no more than that"
 
 
 def test_lattices_are_dense_at_their_borders_and_wide_between():
     geometry = geometry_of(wall(4.0, 4.0))
     nodes = nodes_of(geometry)
-    lines = np.unique(np.round(nodes.points[:, 0], 9))
-    gaps = np.rint(np.diff(lines) / CELL).astype(int)
-    assert len(gaps) < 20 and gaps.sum() == 39, "from the first of 40 columns to the last"
-    np.testing.assert_array_equal(gaps, gaps[::-1])
-    assert gaps[0] == 1 and gaps.max() >= 3
+    lines = np.unique(np.round(nodes.points[:, 0], 9)) / CELL + 20
+    gaps = np.diff(lines)
+    assert len(gaps) < 20 and lines[0] == pytest.approx(40 - lines[-1])
+    assert 0.05 < lines[0] < 0.3, "light changes fast beside other planes"
+    np.testing.assert_allclose(gaps, gaps[::-1])
+    assert gaps[0] < 0.5 and gaps[1] == pytest.approx(1) and gaps.max() >= 3
     assert len(nodes.points) < 0.15 * len(geometry.fracture.elements)
 
 
@@ -292,11 +289,13 @@ def test_where_light_is_steep_elements_get_several_receivers():
         return 1 + 9 / (1 + np.exp(-(x - 0.94) / 0.012))
 
     geometry, _, nodes, values, asked = settle(wall(), light)
-    assert len(asked) == 3
+    assert len(asked) >= 3
     each = np.diff(nodes.weights.start)
     points = geometry.element_points + geometry.planes.centre
     steep = (points[:, 0] > 0.9) & (points[:, 0] < 1.0)
-    assert (each[steep] == 4).all() and asked[2] == 4 * (each == 4).sum() <= 4 * 2 * 10 * 3
+    assert (each[steep] >= 4).all() and (each[points[:, 0] > 1.2] < 17).all()
+    assert sum(asked) == len(values) == len(nodes.points)
+    assert asked[2] % 3 == 0, "of four parts the middle one keeps the element's receiver"
     corners = geometry.fracture.elements[steep] + geometry.planes.centre
     grid = np.array([(i + 1 / 3, j + 1 / 3) for i in range(24) for j in range(24 - i)]) / 24
     shares = np.c_[grid, 1 - grid.sum(axis=1)]
@@ -305,22 +304,20 @@ def test_where_light_is_steep_elements_get_several_receivers():
     got = nodes.weights.apply(values)[steep]
     single = light(points[steep, 0], points[steep, 2])
     assert np.abs(got - exact).mean() < 0.5 * np.abs(single - exact).mean()
-    assert STEEP > DOUBT
+    assert STEEP > DOUBT, "what is doubted has its own receiver before it is asked how steep it is"
 
 
 def test_own_receivers_replace_what_was_interpolated():
     geometry = geometry_of(wall())
     nodes = nodes_of(geometry)
     some = np.array([40, 41, 300])
-    points = np.repeat(geometry.element_points[some][:, None], 2, axis=1)
-    points[:, 1] += [0.01, 0, 0]
-    more = nodes.with_own(some, points)
-    light = np.concatenate([np.ones(len(nodes.points)), [2, 4, 10, 20, 0, 8]])
+    more = nodes.with_own(some, geometry.element_points[some])
+    light = np.concatenate([np.ones(len(nodes.points)), [2, 4, 10]])
     got = more.weights.apply(light)
-    np.testing.assert_allclose(got[some], [3, 15, 4])
+    np.testing.assert_allclose(got[some], [2, 4, 10])
     np.testing.assert_allclose(np.delete(got, some), 1)
-    np.testing.assert_array_equal(more.element[-6:], [40, 40, 41, 41, 300, 300])
-    np.testing.assert_allclose(nodes.weights.apply(light[: len(nodes.points)]), 1, err_msg="the first are untouched")
+    np.testing.assert_array_equal(more.element[-3:], some)
+    np.testing.assert_allclose(nodes.weights.apply(light[:-3]), 1, err_msg="the first are untouched")
 
 
 def test_many_kinds_of_light_at_once():

@@ -166,12 +166,11 @@ def test_a_room_with_a_mirror_wall_is_half_of_a_double_room(emitting):
     points = [[1, 0.7, 0], [0.3, 1.4, 0], [2, 0.5, 1.2], [1.2, 0, 0.6], [0.6, 1.1, 1.0]]
     normals = [UP, UP, [-1, 0, 0], NORTH, [0.6, 0, 0.8]]
     one, other = half.solve(DARK), whole.solve(DARK)
-    # 0.3 % is the aim; parcels that the mirror's edge crosses lose up to 1.5 % today
-    np.testing.assert_allclose(one.at(points, normals), other.at(points, normals), rtol=0.02)
+    np.testing.assert_allclose(one.at(points, normals), other.at(points, normals), rtol=5e-3)
     np.testing.assert_allclose(
         one.at(points, normals, initial=True), other.at(points, normals, initial=True), rtol=1e-6
     )
-    assert one.mean("south") == pytest.approx(other.mean("south"), rel=0.02)
+    assert one.mean("south") == pytest.approx(other.mean("south"), rel=3e-3)
 
 
 def test_mixed_reflection_is_partly_mirror_partly_diffuse():
