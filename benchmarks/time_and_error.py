@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import datetime
-import inspect
 import json
 import os
 import platform
@@ -34,7 +33,7 @@ METHODS = {"published": "one direction per parcel", "solver": "LuzEspecular"}
 BANDS = (20, 30, 40, 60, 90, 120)
 ACCURACIES = (0.03, 0.01)
 REPEATS = 3
-LARGE = {"furnished": 4.0}
+LARGE = {"furnished": 3.0}
 """Scenes that may take this many times the budget."""
 MARK = "<!-- From here on written by benchmarks/time_and_error.py -->"
 
@@ -128,14 +127,6 @@ def run_apart(task: dict, limit: float) -> dict:
     return json.loads(done.stdout.strip().splitlines()[-1])
 
 
-def settings(method: str, bands) -> list[dict]:
-    """Settings to go through, each a set of options of `luzespecular.prepare`."""
-    found: list[dict] = [{"bands": b} for b in bands]
-    if method == "solver" and "accuracy" in inspect.signature(luz.prepare).parameters:
-        found += [{"accuracy": a} for a in ACCURACIES]
-    return found
-
-
 def measure_scene(name: str, args, kept: dict, keep) -> None:
     """Measure both methods at all settings that the budget allows, old and new in turn."""
     scene = scenes.load(name)
@@ -144,13 +135,13 @@ def measure_scene(name: str, args, kept: dict, keep) -> None:
     known = {(row["method"], json.dumps(row["setting"])) for row in entry["measured"]}
     spent = dict.fromkeys(METHODS, 0.0)
     budget = args.seconds * LARGE.get(name, 1.0)
-    tasks = [(m, s) for b in args.bands for m in METHODS for s in settings(m, [b])[:1]]
-    tasks += [(m, s) for m in METHODS for s in settings(m, [])]
+    tasks = [(method, {"bands": b}) for b in args.bands for method in METHODS]
+    tasks += [("solver", {"accuracy": a}) for a in args.accuracies]
     for method, setting in tasks:
         if (method, json.dumps(setting)) in known:
             continue
         left = max(budget - spent[method], budget / 2)
-        if "bands" in setting and least_seconds(entry["measured"], method, setting["bands"]) > left:
+        if least_seconds(entry["measured"], method, setting) > left:
             row = {"failed": "left out: over the budget of seconds"}
         else:
             task = {"scene": name, "method": method, "setting": setting, "threads": args.threads}
@@ -163,12 +154,16 @@ def measure_scene(name: str, args, kept: dict, keep) -> None:
         print(f"{name:18}{method:11}{json.dumps(setting):20}{summary(row)}", flush=True)
 
 
-def least_seconds(rows: list[dict], method: str, bands: int) -> float:
-    """Seconds that some bands take at least, by what fewer took: in proportion, or endless where they failed."""
-    fewer = [r for r in rows if r["method"] == method and r["setting"].get("bands", bands) < bands]
-    if any("failed" in r for r in fewer):
-        return float("inf")
-    return max((r["seconds"] * bands / r["setting"]["bands"] for r in fewer), default=0.0)
+def least_seconds(rows: list[dict], method: str, setting: dict) -> float:
+    """Seconds that a setting takes at least, by what coarser ones took: in proportion, or endless where they failed."""
+    ((kind, value),) = setting.items()
+    found = 0.0
+    for row in rows:
+        if row["method"] == method and kind in row["setting"]:
+            finer = value / row["setting"][kind] if kind == "bands" else row["setting"][kind] / value
+            if finer > 1:
+                found = max(found, row["seconds"] * finer if "seconds" in row else float("inf"))
+    return found
 
 
 def summary(row: dict) -> str:
@@ -373,6 +368,7 @@ def main():
     ap.add_argument("--quick", action="store_true", help="8 bands, one run each: only to see that it runs")
     ap.add_argument("--scenes", nargs="+", choices=scenes.NAMES, default=list(scenes.NAMES))
     ap.add_argument("--bands", nargs="+", type=int, default=list(BANDS))
+    ap.add_argument("--accuracies", nargs="*", type=float, default=list(ACCURACIES))
     ap.add_argument("--seconds", type=float, default=20.0, help="budget for each scene and method")
     ap.add_argument("--threads", type=int, default=os.cpu_count() or 1)
     ap.add_argument("--output", type=Path, default=ROOT / "build" / "time_and_error")
@@ -385,7 +381,7 @@ def main():
         print(json.dumps(run_here(task.pop("scene"), **task)))
         return
     if args.quick:
-        args.bands = [8]
+        args.bands, args.accuracies = [8], []
     args.output.mkdir(parents=True, exist_ok=True)
     path = args.output / "measurements.json"
     state = {"about": about(args.threads), "scenes": {}}
