@@ -298,5 +298,7 @@ def test_images_by_many_mirrors_come_by_the_globe():
     assert result.illuminance.min() > 1.2 * exact_alone
     points, normals = [[0.5, 0.6, 0], [0.2, 1.1, 0]], [UP, UP]
     np.testing.assert_allclose(result.at(points, normals), initial * (1 - 0.7**14), rtol=0.03)
+    seen = transfer.form_factors.sum(axis=1) + transfer.truncated  # each meeting counts, as each side shines
+    np.testing.assert_allclose(seen, initial / 100, rtol=0.02)
     every = transfer.solve(DARK, tolerance=1e-8)
     np.testing.assert_allclose(every.illuminance, 100 / (1 - 0.7 - 0.1), rtol=0.03, err_msg="reflected light too")
