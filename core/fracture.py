@@ -25,6 +25,7 @@ ELEMENTS_PER_PLAIN_SURFACE = 96
 
 
 _FEWEST_CELLS = 4
+_MOST_SLENDER = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -343,7 +344,10 @@ def _elements(faces: Triangles, limits: np.ndarray) -> Triangles:
     found, parents, grids, count = [], [], [], 0
     for grid in faces.grids:
         cells = np.arange(grid.first, grid.first + 2 * grid.rows * grid.columns)
-        times = max(1, math.ceil(math.sqrt(areas[grid.first] / limits[grid.first]) - 1e-9))
+        sides = np.linalg.norm([grid.along_rows, grid.along_columns], axis=1)
+        # both axes are divided alike, as the faces' diagonal has to stay one: long cells need more
+        slender = min(float(sides.max() / sides.min()), _MOST_SLENDER)
+        times = max(1, math.ceil(math.sqrt(slender * areas[grid.first] / limits[grid.first]) - 1e-9))
         if grid.rows * grid.columns * times**2 < _FEWEST_CELLS:
             continue  # too few cells to tell how light changes
         alone[cells] = False

@@ -39,7 +39,7 @@ _MEAN_POINTS = np.array(
 _MEAN_SHARES = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
 _MOST_SPLITS = 3
 
-STEEP = 0.15
+STEEP = 0.1
 """Difference between the halves of a cell, relative to all light, from which several receivers serve each."""
 
 
