@@ -38,6 +38,7 @@ _MEAN_POINTS = np.array(
 )
 _MEAN_SHARES = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
 _MOST_SPLITS = 3
+_FEWEST_SPLITS = 100
 
 STEEP = 0.1
 """Difference between the halves of a cell, relative to all light, from which several receivers serve each."""
@@ -251,7 +252,8 @@ def settled(
         first = len(nodes.points)
         nodes, pieces = nodes.with_split(pieces)
         values = evaluate(nodes, first)
-        pieces = pieces.uneven(values, nodes.weights.apply(values).sum(axis=1), STEEP / times)
+        total = nodes.weights.apply(values).sum(axis=1)
+        pieces = pieces.uneven(values, total, STEEP / times, _most_pieces(lattice))
     return nodes
 
 
@@ -278,13 +280,15 @@ class _Pieces:
         own, here = np.diff(nodes.weights.start) == 1, nodes.weights.apply(values)
         total = here.sum(axis=1)
         total = np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))
-        found = [np.zeros(0, np.int64)]
+        found, slopes = [np.zeros(0, np.int64)], [np.zeros(0)]
         for grid in fracture.grids:
             pair = here[grid.elements].reshape(-1, 2, here.shape[1])
             apart = np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0)
             unlike = np.repeat(apart, 2) > steep * total[grid.elements]
-            found.append(grid.first + np.flatnonzero(unlike & own[grid.elements]))
-        element = np.concatenate(found)
+            mine = np.flatnonzero(unlike & own[grid.elements])
+            found.append(grid.first + mine)
+            slopes.append(np.repeat(apart, 2)[mine] / total[grid.elements][mine])
+        element = _foremost(np.concatenate(found), np.concatenate(slopes), _most_pieces(nodes))
         node = nodes.weights.node[nodes.weights.start[element]]
         return cls(fracture.elements[element], element, node, np.ones(len(element)))
 
@@ -303,13 +307,25 @@ class _Pieces:
             np.repeat(0.25 * self.share, 4),
         )
 
-    def uneven(self, values: np.ndarray, total: np.ndarray, most: float) -> _Pieces:
+    def uneven(self, values: np.ndarray, total: np.ndarray, most: float, most_pieces: int) -> _Pieces:
         """Of pieces split last, those that still differ among each other by more than their element can bear."""
         four = values[self.node].reshape(-1, 4, values.shape[1])
         apart = np.abs(four[:, 1:] - four[:, :1]).max(axis=(1, 2), initial=0.0)
         bearable = most * np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))[self.element[::4]]
-        mine = np.repeat(4 * self.share[::4] * apart > bearable, 4)
+        uneven = 4 * self.share[::4] * apart / bearable
+        chosen = _foremost(np.flatnonzero(uneven > 1), uneven[uneven > 1], most_pieces // 4)
+        mine = np.repeat(np.isin(np.arange(len(uneven)), chosen), 4)
         return _Pieces(self.triangle[mine], self.element[mine], self.node[mine], self.share[mine])
+
+
+def _most_pieces(nodes: Nodes) -> int:
+    """How many elements or pieces may be split at once: steep ones cost four times their number."""
+    return max(_FEWEST_SPLITS, len(nodes.points) // 4)
+
+
+def _foremost(items: np.ndarray, by: np.ndarray, most: int) -> np.ndarray:
+    """The items that are largest ``by`` something, at most so many, in their order."""
+    return items if len(items) <= most else np.sort(items[np.argsort(-by, kind="stable")[:most]])
 
 
 class _Entries:

@@ -298,9 +298,9 @@ def settled_home(
     conservation, area = transfer.conservation, transfer.geometry.fracture.element_areas
     stays = area * share * (1 - conservation.lost)
     spread = _spread(transfer, interreflected)
-    flux = area * share * (initial + interreflected)
     missing = float(stays @ (initial + interreflected)) - float(conservation.kept @ interreflected)
-    trust = trusted(float(flux @ conservation.lost) / max(float(flux.sum()), 1e-300))
+    # of the scene, not of the light at hand, so that lights add up
+    trust = trusted(float((area * share) @ conservation.lost) / max(float((area * share).sum()), 1e-300))
     return interreflected + trust * missing / max(1 - float(stays @ spread), 1e-12) * spread, missing
 
 

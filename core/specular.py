@@ -31,6 +31,9 @@ _MOST_IMAGES = 80
 _DEEPEST_IMAGE = 40
 _WALLS_OF_BOX = 6
 
+_WINDOWS = 2
+"""Earlier mirrors whose edges bound what beams show in part."""
+
 _WITHIN = 4e-5
 """Angle from a mirror's edge that centres of parts keep [rad], so that nothing that stands at the edge is before it."""
 
@@ -529,7 +532,9 @@ class GroupSight:
             whole.outlines[[o]], whole.vertices[[o]], whole.bounding[[o]], whole.normals[[o]], whole.offsets[[o]]
         )
         planes = edge_planes(points, one, self.outlines.tolerance)[0][:, 0].astype(np.float32)
-        planes = planes if window is None else np.concatenate([window, planes], axis=1)
+        if window is not None:
+            # of the mirrors before, the last few: what is seen through many lies well inside the first
+            planes = np.concatenate([window[:, -_WINDOWS * planes.shape[1] :], planes], axis=1)
         return Partial(onward.row, onward.beam, direction, planes)
 
     def _onward(self, rays: _Rays, places, o: int, front, cosine, truncated) -> list[_Rays]:
