@@ -25,11 +25,14 @@ from .transfer import Transfer
 EXACT_OUTLINES = 400
 """Scenes of more outlines gather luminous surfaces and sun patches by the globe, like all other light."""
 
+_OF_SUN_PATCHES = 0.25
+"""How fine the receivers of their light alone are, which comes anew with every hour, over those of all light."""
+
 _CLOSED = 1e-3
 """Share of bright polygons' light that may escape from what counts as closed."""
 
 _SKY_SUBDIVISION = 4
-_SOURCE_ROWS = 4096
+_SOURCE_ROWS = 512
 _PRODUCT_ROWS = 128
 
 
@@ -160,7 +163,7 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     elif emitters:
         deep_emitted = emitted
         given = np.array([m.exitance for m in geometry.surface_materials])[geometry.element_surface]
-        found = _gather_bright(transfer, emitters, deep_emitted, _Span(recorder, 0.1, 0.4))
+        found = _gather_bright(transfer, emitters, deep_emitted, 1.0, _Span(recorder, 0.1, 0.4))
         components["emitted"], adjusted[0] = brought_home(transfer, found, given)
     sky = components["sky_direct"] + components["sky_specular"]
     smooth = sky + components["emitted"]
@@ -174,7 +177,7 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     first = np.zeros(len(sun))
     if sunny:
         deep_reflected = reflectance * patch_means(geometry, sun - sunlight.blur)
-        first = _gather_bright(transfer, sunny, deep_reflected, _Span(recorder, 0.4, 0.8))
+        first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, _Span(recorder, 0.4, 0.8))
         first, adjusted[1] = brought_home(transfer, first, share * (sun - sunlight.blur))
     smooth, once = patch_means(geometry, smooth), patch_means(geometry, first)
 
@@ -245,7 +248,9 @@ class _Span:
         self.recorder.report(self.first + (self.last - self.first) * done, "interreflection")
 
 
-def _gather_bright(transfer: Transfer, sources: list[Source], deep: np.ndarray, span: _Span) -> np.ndarray:
+def _gather_bright(
+    transfer: Transfer, sources: list[Source], deep: np.ndarray, times: float, span: _Span
+) -> np.ndarray:
     """(e,) float: illuminance from bright polygons; by way of many mirrors, from their patches of exitance ``deep``."""
     geometry = transfer.geometry
     found = np.zeros(0)
@@ -267,9 +272,10 @@ def _gather_bright(transfer: Transfer, sources: list[Source], deep: np.ndarray, 
 
         run_parallel(work, chunks, transfer.threads, lambda part: span.report(begun + share * part))
         done = begun + share
-        return found[:, None]
+        # there is other light as well: where this is faint, its unevenness matters little
+        return np.stack([found, np.full(len(found), found.mean())], axis=1)
 
-    nodes = settled(transfer.lattice, geometry.fracture, evaluate, transfer.times)
+    nodes = settled(transfer.lattice, geometry.fracture, evaluate, times * transfer.times)
     by_many = np.zeros(len(transfer.nodes.points))
     by_many[transfer.deep_rows] = product(transfer.deep_factors, deep)
     return nodes.on_elements(found) + transfer.on_elements(by_many)
