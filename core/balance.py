@@ -52,10 +52,10 @@ def lumen_balance(result: Result) -> Balance:
     transfer, components = result.transfer, result.field.components
     geometry = transfer.geometry
     area, surface = geometry.fracture.element_areas, geometry.element_surface
-    materials = geometry.surface_materials
-    absorptance = np.array([m.hemispherical_absorptance for m in materials])[surface]
-    reflectance = np.array([m.diffuse_reflectance for m in materials])[surface]
-    emitted = np.array([m.exitance for m in materials])[surface]
+    absorptance, reflectance = (
+        geometry.of_elements(name) for name in ("hemispherical_absorptance", "diffuse_reflectance")
+    )
+    emitted = geometry.of_elements("exitance")
 
     illuminance = sum(components.values())
     outside = sum(components[name] for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular"))
@@ -66,7 +66,7 @@ def lumen_balance(result: Result) -> Balance:
     escaped, unlit, lost = (
         float(flux @ transfer.on_elements(share)) for share in (open_share, transfer.unlit, transfer.truncated)
     )
-    absorbed = np.bincount(surface, weights=area * illuminance * absorptance, minlength=len(materials))
+    absorbed = np.bincount(surface, weights=area * illuminance * absorptance, minlength=len(geometry.surface_materials))
     # light from outside that is cut with its chain never lands, so it is no part of entering
     truncated = lost
     if entering == 0:

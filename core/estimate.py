@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .gather import Targets, gather
-from .geometry import Geometry
+from .geometry import Geometry, sight_of
 from .globe import Globe
 from .nodes import Nodes
 from .parallel import chunks_of_receivers, run_parallel
-from .specular import ChainLimits, GroupSight
+from .specular import ChainLimits
 
 _SHARE = 0.04
 _FEWEST, _MOST = 4, 400
@@ -68,39 +68,27 @@ def make_trial(
     -------
     Trial
     """
-    bands = round(geometry.targets.globe.bands / math.sqrt(2))
-    return look_from(geometry, nodes, sample(nodes.sheet), bands, limits, threads, report)
-
-
-def look_from(
-    geometry: Geometry,
-    nodes: Nodes,
-    some: np.ndarray,
-    bands: int,
-    limits: ChainLimits,
-    threads: int,
-    report: Callable[[float], None],
-) -> Trial:
-    """Look from some of the nodes ``(k,)`` on a globe of ``bands``, or of one more; else as `make_trial`."""
-    targets = Targets.of(geometry.planes, geometry.targets.patches, Globe.cut_at_horizon(max(2, bands)))
+    bands = max(2, round(geometry.targets.globe.bands / math.sqrt(2)))
+    targets = Targets.of(geometry.planes, geometry.targets.patches, Globe.cut_at_horizon(bands))
+    coarse = replace(geometry, targets=targets)
+    some = _sample(nodes.sheet)
     patches = np.zeros((len(some), targets.patches.count), np.float32)
     sky = np.zeros((len(some), targets.columns), np.float32)
 
     def work(chunk, checkpoint) -> None:
         rows = some[chunk]
         normal = geometry.element_normals[nodes.element[rows[0]]]
-        offset = float(normal @ nodes.points[rows[0]])
-        sight = GroupSight(geometry.outlines, targets.globe.hemisphere(normal), offset, limits)
+        sight = sight_of(coarse, limits, normal, float(normal @ nodes.points[rows[0]]))
         found = gather(sight, nodes.points[rows], targets, checkpoint)
         patches[chunk] = found.patches
-        sky[chunk] = found.sky_direct if found.sky_specular is None else found.sky_direct + found.sky_specular
+        sky[chunk] = found.sky
 
     chunks = chunks_of_receivers(nodes.points[some], nodes.sheet[some], geometry.planes, 200)
     run_parallel(work, chunks, threads, report)
     return Trial(some, targets, patches, sky)
 
 
-def sample(sheet: np.ndarray) -> np.ndarray:
+def _sample(sheet: np.ndarray) -> np.ndarray:
     """Numbers of some nodes of each sheet, evenly among them; of few sheets' where there are very many."""
     order = np.argsort(sheet, kind="stable")
     starts = np.flatnonzero(np.concatenate(([True], np.diff(sheet[order]) > 0))) if len(order) else np.zeros(0, int)

@@ -54,8 +54,6 @@ class Rows:
 
     def widened(self, count: int, geometry: Geometry) -> Rows:
         """With room for more rows."""
-        if not len(self.unlit):
-            return Rows.empty(count, geometry)
         wide = Rows.empty(count, geometry)
         wide.deep.update(self.deep)
         for name in (f.name for f in fields(self) if f.name != "deep"):
@@ -179,8 +177,7 @@ def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> n
     pairs, place = np.unique(key, return_inverse=True)
     weight = np.bincount(place.reshape(-1), weights=share, minlength=len(pairs))
     to, node = np.divmod(pairs, len(nodes.points))
-    total = np.bincount(patch[patch >= 0], weights=area[patch >= 0], minlength=count)
-    weight = weight / total[to]
+    weight = weight / geometry.patch_areas[to]
     bounds = np.searchsorted(to, np.arange(count + 1))
     step = max(1, int(4e6) // max(count, 1))
     first = 0
@@ -222,25 +219,21 @@ class Conservation:
     @classmethod
     def of(cls, geometry: Geometry, nodes: Nodes, rows: Rows) -> Conservation:
         """Compare what patches send out with what nodes receive."""
-        patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
-        count = geometry.targets.patches.count
-        landing = np.array([m.hemispherical_absorptance + m.diffuse_reflectance for m in geometry.surface_materials])
-        kept = area * landing[geometry.element_surface]
+        area = geometry.fracture.element_areas
+        kept = area * (geometry.of_elements("hemispherical_absorptance") + geometry.of_elements("diffuse_reflectance"))
         lost = rows.sky_direct.sum(axis=1, dtype=float) + rows.unlit + rows.truncated
         if rows.specular_rows.any():
             lost += rows.sky_specular.sum(axis=1, dtype=float)
         lost = nodes.weights.apply(lost)
         weights = nodes.weights
         share = np.bincount(weights.node, weights=weights.weight * kept[weights.rows], minlength=len(nodes.points))
-        landed, seen = np.zeros(count), np.zeros(len(share))
+        landed, seen = np.zeros(geometry.targets.patches.count), np.zeros(len(share))
         for first in range(0, len(share), _ROWS):
             some = rows.form_factors[first : first + _ROWS].astype(float)
             landed += share[first : first + _ROWS] @ some
             seen[first : first + _ROWS] = some.sum(axis=1)
-        mine = patch >= 0
-        sent = np.bincount(patch[mine], weights=(area * (1 - lost))[mine], minlength=count)
-        areas = np.bincount(patch[mine], weights=area[mine], minlength=count)
-        missing = (sent - landed) * trusted(1 - sent / np.maximum(areas, 1e-300))
+        sent = geometry.patch_sums(area * (1 - lost))
+        missing = (sent - landed) * trusted(1 - sent / np.maximum(geometry.patch_areas, 1e-300))
         total = float(share @ seen)
         return cls(kept, lost, seen / total if total > 0 else seen, missing)
 

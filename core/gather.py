@@ -68,6 +68,11 @@ class Gathered:
     unlit: np.ndarray
     truncated: np.ndarray
 
+    @property
+    def sky(self) -> np.ndarray:
+        """(r, c) float32: form factor to each sky parcel and the ground, straight and by mirrors."""
+        return self.sky_direct if self.sky_specular is None else self.sky_direct + self.sky_specular
+
 
 def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[], None] = lambda: None) -> Gathered:
     """Form factors of receivers that share one plane.

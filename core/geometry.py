@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -48,6 +49,21 @@ class Geometry:
     def element_surface(self) -> np.ndarray:
         """(e,) int."""
         return self.planes.sheet_surface[self.fracture.element_sheet % len(self.planes.sheet_surface)]
+
+    def of_elements(self, name: str) -> np.ndarray:
+        """(e,) float: a property of the elements' materials."""
+        return np.array([getattr(m, name) for m in self.surface_materials], float)[self.element_surface]
+
+    def patch_sums(self, values: np.ndarray) -> np.ndarray:
+        """(p,) float: sums over each patch's elements of values ``(e,)``."""
+        patch = self.targets.patches.of_element
+        mine = patch >= 0
+        return np.bincount(patch[mine], weights=values[mine], minlength=self.targets.patches.count).astype(float)
+
+    @cached_property
+    def patch_areas(self) -> np.ndarray:
+        """(p,) float [m²]."""
+        return self.patch_sums(self.fracture.element_areas)
 
 
 def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | None, times: float = 1.0) -> Geometry:

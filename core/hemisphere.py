@@ -72,7 +72,7 @@ class Hemisphere:
         if len(polar):
             arc = self._flat(polar, outer[polar, None], turn[polar])
             many, counts[polar] = self._cut(polar, np.concatenate([arc, near[polar]], axis=1))
-            corners = _widened(corners, many.shape[1])
+            corners = polygons.widen(corners, many.shape[1])
             corners[polar] = many
         return Shapes.of(corners, counts)
 
@@ -107,8 +107,8 @@ class Hemisphere:
         if len(low):
             above = polygons.clip(spatial[low], level[low], -height[low])
             width = max(spatial.shape[1], above.shape[1])
-            spatial = _widened(spatial, width)
-            spatial[low] = _widened(above, width)
+            spatial = polygons.widen(spatial, width)
+            spatial[low] = polygons.widen(above, width)
             counts[low] = above.shape[1]
         return spatial[:, :, :2], counts
 
@@ -165,10 +165,6 @@ class Shapes:
         """Shapes from corners ``(k, v, 2)``."""
         corners = np.ascontiguousarray(np.moveaxis(corners, 0, 2).swapaxes(0, 1))
         return cls(corners, counts, polygons.convex_moments(corners, np.zeros((3, 0, len(counts)))).T)
-
-
-def _widened(shapes, width: int) -> np.ndarray:
-    return np.concatenate([shapes, np.repeat(shapes[:, -1:], width - shapes.shape[1], axis=1)], axis=1)
 
 
 def direction_of(polar, azimuth) -> np.ndarray:

@@ -21,9 +21,10 @@ _DENSE_SHARE = 0.7
 """Growth of the lattice's spacing with the distance from the border."""
 
 DOUBT = 0.02
-"""Difference of cubic and linear interpolation, relative to all light, from which elements get their own receivers."""
+"""Surprise of a node (`Nodes.doubt`), relative to all light, from which the elements around get their own receivers."""
 
 _CURVE = 0.1
+"""Error of one receiver for an element, over the difference between the halves of its cell."""
 
 _SPACES = 8
 """Widest spaces between lines of nodes, in a stretch."""
@@ -31,12 +32,6 @@ _SPACES = 8
 _BESIDE = 0.12
 """Distance from the end of a stretch to its first line of nodes, in cells: light changes fast beside other planes."""
 
-# Radon's rule for means over triangles, exact to the fifth degree: barycentric places, and shares
-_NEAR, _FAR = (6 - np.sqrt(15)) / 21, (6 + np.sqrt(15)) / 21
-_MEAN_POINTS = np.array(
-    [[1 / 3] * 3] + [np.roll([1 - 2 * a, a, a], k).tolist() for a in (_NEAR, _FAR) for k in range(3)]
-)
-_MEAN_SHARES = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
 _MOST_SPLITS = 3
 _FEWEST_SPLITS = 100
 
@@ -163,27 +158,19 @@ class Nodes:
             Several kinds of light, none negative.
         """
         surprise = np.zeros(len(values))
-        total = values.sum(axis=1)
-        total = np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))
         for foretold in self.foretold:
             apart = values[: len(foretold.start) - 1] - foretold.apply(values)
             apart = np.maximum(np.abs(apart).max(axis=1, initial=0.0), np.abs(apart.sum(axis=1)))
             surprise[: len(apart)] = np.maximum(surprise[: len(apart)], apart)
-        surprise /= total
+        surprise /= _all_light(values)
         return np.maximum.reduceat(surprise[self.around.node], self.around.start[:-1])
 
     def unsure(self, values: np.ndarray, fracture: Fracture) -> np.ndarray:
         """(e,) float: what interpolation, or one receiver for an area, leaves open, over all light; see `doubt`."""
-        open_ = self.doubt(values)
-        here, own = self.weights.apply(values), np.diff(self.weights.start)
-        total = np.maximum(here.sum(axis=1), 1e-3 * max(float(here.sum(axis=1).mean()), 1e-300))
-        for grid in fracture.grids:
-            pair = here[grid.elements].reshape(-1, 2, here.shape[1])
-            apart = np.repeat(np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0), 2) / total[grid.elements]
-            # a mean by n receivers errs by the light's curve, which is less than its slope, over n
-            alone = (own[grid.elements] > 0) & (own[grid.elements] <= 4)
-            open_[grid.elements] += np.where(alone, _CURVE * apart / np.maximum(own[grid.elements], 1), 0.0)
-        return open_
+        # a mean by n receivers errs by the light's curve, which is less than its slope, over n
+        receivers = np.diff(self.weights.start)
+        slope = _slopes(self.weights.apply(values), fracture) / np.maximum(receivers, 1)
+        return self.doubt(values) + np.where((receivers > 0) & (receivers <= 4), _CURVE * slope, 0.0)
 
     def with_own(self, elements: np.ndarray, points: np.ndarray) -> Nodes:
         """With receivers of their own ``points`` (k, 3) for some elements ``(k,)``."""
@@ -252,8 +239,8 @@ def settled(
         first = len(nodes.points)
         nodes, pieces = nodes.with_split(pieces)
         values = evaluate(nodes, first)
-        total = nodes.weights.apply(values).sum(axis=1)
-        pieces = pieces.uneven(values, total, STEEP / times, _most_pieces(lattice))
+        light = _all_light(nodes.weights.apply(values))
+        pieces = pieces.uneven(values, light, STEEP / times, _most_pieces(lattice))
     return nodes
 
 
@@ -277,18 +264,9 @@ class _Pieces:
     @classmethod
     def steep(cls, nodes: Nodes, values: np.ndarray, fracture: Fracture, steep: float) -> _Pieces:
         """Elements with one receiver of their own that the other half of their cell differs much from."""
-        own, here = np.diff(nodes.weights.start) == 1, nodes.weights.apply(values)
-        total = here.sum(axis=1)
-        total = np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))
-        found, slopes = [np.zeros(0, np.int64)], [np.zeros(0)]
-        for grid in fracture.grids:
-            pair = here[grid.elements].reshape(-1, 2, here.shape[1])
-            apart = np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0)
-            unlike = np.repeat(apart, 2) > steep * total[grid.elements]
-            mine = np.flatnonzero(unlike & own[grid.elements])
-            found.append(grid.first + mine)
-            slopes.append(np.repeat(apart, 2)[mine] / total[grid.elements][mine])
-        element = _foremost(np.concatenate(found), np.concatenate(slopes), _most_pieces(nodes))
+        slope = _slopes(nodes.weights.apply(values), fracture)
+        element = np.flatnonzero((slope > steep) & (np.diff(nodes.weights.start) == 1))
+        element = _foremost(element, slope[element], _most_pieces(nodes))
         node = nodes.weights.node[nodes.weights.start[element]]
         return cls(fracture.elements[element], element, node, np.ones(len(element)))
 
@@ -307,15 +285,29 @@ class _Pieces:
             np.repeat(0.25 * self.share, 4),
         )
 
-    def uneven(self, values: np.ndarray, total: np.ndarray, most: float, most_pieces: int) -> _Pieces:
+    def uneven(self, values: np.ndarray, light: np.ndarray, steep: float, most_pieces: int) -> _Pieces:
         """Of pieces split last, those that still differ among each other by more than their element can bear."""
         four = values[self.node].reshape(-1, 4, values.shape[1])
         apart = np.abs(four[:, 1:] - four[:, :1]).max(axis=(1, 2), initial=0.0)
-        bearable = most * np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))[self.element[::4]]
-        uneven = 4 * self.share[::4] * apart / bearable
+        uneven = 4 * self.share[::4] * apart / (steep * light[self.element[::4]])
         chosen = _foremost(np.flatnonzero(uneven > 1), uneven[uneven > 1], most_pieces // 4)
         mine = np.repeat(np.isin(np.arange(len(uneven)), chosen), 4)
         return _Pieces(self.triangle[mine], self.element[mine], self.node[mine], self.share[mine])
+
+
+def _all_light(values: np.ndarray) -> np.ndarray:
+    """(n,) float: sums of several kinds of light ``(n, g)``, nowhere less than a thousandth of their mean."""
+    total = values.sum(axis=1)
+    return np.maximum(total, 1e-3 * max(float(total.mean()), 1e-300))
+
+
+def _slopes(here: np.ndarray, fracture: Fracture) -> np.ndarray:
+    """(e,) float: how far the halves of a cell lie apart, over all light there; 0 for elements of no cell."""
+    slopes = np.zeros(len(here))
+    for grid in fracture.grids:
+        pair = here[grid.elements].reshape(-1, 2, here.shape[1])
+        slopes[grid.elements] = np.repeat(np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0), 2)
+    return slopes / _all_light(here)
 
 
 def _most_pieces(nodes: Nodes) -> int:
@@ -384,7 +376,7 @@ def _enter(lattice: Layout, entries: _Entries) -> None:
     for half, corners in enumerate(np.array(grid.corners, float)):
         centre = np.mean(corners, axis=0, keepdims=True)
         for order, places, shares, out in (
-            (4, _MEAN_POINTS @ corners, _MEAN_SHARES, entries.weights),
+            (4, polygons.RADON_PLACES @ corners, polygons.RADON_SHARES, entries.weights),
             (2, centre, np.ones(1), entries.around),
         ):
             line_a, weight_a = _stencils(stretches[0], np.arange(grid.rows), centre[0, 0], places[:, 0], order)
@@ -468,10 +460,7 @@ def _pieces(elements, lattice: Layout):
         wall = polygons.cross(grid.normal, grid.place(b) - grid.place(a))
         wall /= np.linalg.norm(wall)
         sides = [polygons.clip(shapes, side * wall, side * float(wall @ grid.place(a))) for side in (1.0, -1.0)]
-        width = max(side.shape[1] for side in sides)
-        shapes = np.concatenate(
-            [np.concatenate([s, np.repeat(s[:, -1:], width - s.shape[1], axis=1)], axis=1) for s in sides]
-        )
+        shapes = polygons.joined(sides)
         owner, areas = np.tile(owner, 2), polygons.areas(shapes)
         keep = areas > 1e-6 * total[owner]
         shapes, owner, areas = shapes[keep], owner[keep], areas[keep]

@@ -34,15 +34,6 @@ _TESTS = 500_000
 _DARK = 1e-9
 """Of a beam: less on all elements of a mirror is rounding, and not followed."""
 
-_BARYCENTRIC = np.array(
-    [
-        [1 / 3, 1 / 3, 1 / 3],
-        *(np.roll([1 - 2 * a, a, a], k) for a in ((6 - np.sqrt(15)) / 21, (6 + np.sqrt(15)) / 21) for k in range(3)),
-    ]
-)
-_POINT_WEIGHTS = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
-"""Radon's rule for means over triangles, exact to the fifth degree."""
-
 
 @dataclass(frozen=True, eq=False)
 class DiscBeam:
@@ -382,10 +373,10 @@ def _sort(beam: DiscBeam, screens: Screens, triangles):
 
 def _clip_disc(beam, screens, disc_part, rule, cosines, triangles, cut) -> np.ndarray:
     """(n,) float: means over triangles by points on them, each with the disc clipped exactly."""
-    n, q = len(triangles), len(_POINT_WEIGHTS)
-    points = np.einsum("qt,ntc->nqc", _BARYCENTRIC, triangles).reshape(-1, 3)
+    n, q = len(triangles), len(polygons.RADON_SHARES)
+    points = np.einsum("qt,ntc->nqc", polygons.RADON_PLACES, triangles).reshape(-1, 3)
     seen = _seen_disc(screens, disc_part, points, np.repeat(cut, q, axis=1)) @ cosines
-    return seen.reshape(n, q) @ _POINT_WEIGHTS
+    return seen.reshape(n, q) @ polygons.RADON_SHARES
 
 
 def _seen_disc(screens: Screens, disc_part, points, cut) -> np.ndarray:

@@ -40,6 +40,25 @@ def areas(polygons) -> np.ndarray:
     return 0.5 * np.linalg.norm(newell_normal(polygons), axis=-1)
 
 
+def widen(polygons, width: int) -> np.ndarray:
+    """(m, width, 3) float: padded polygons ``(m, v, 3)``, v ≤ width, padded further."""
+    return np.concatenate([polygons, np.repeat(polygons[:, -1:], width - polygons.shape[1], axis=1)], axis=1)
+
+
+def joined(batches) -> np.ndarray:
+    """All padded polygons of several batches ``(m, v, 3)`` in one; at least one batch."""
+    width = max(batch.shape[1] for batch in batches)
+    return np.concatenate([widen(batch, width) for batch in batches])
+
+
+# Radon's rule for means over triangles, exact to the fifth degree: barycentric places, and shares
+_NEAR, _FAR = (6 - np.sqrt(15)) / 21, (6 + np.sqrt(15)) / 21
+RADON_PLACES = np.array(
+    [[1 / 3] * 3] + [np.roll([1 - 2 * a, a, a], k).tolist() for a in (_NEAR, _FAR) for k in range(3)]
+)
+RADON_SHARES = np.repeat([9 / 40, (155 - np.sqrt(15)) / 1200, (155 + np.sqrt(15)) / 1200], [1, 3, 3])
+
+
 def centroids(polygons) -> np.ndarray:
     """(m, 3) float: centroids of planar convex polygons ``(m, v, 3)``."""
     p = np.asarray(polygons, float)

@@ -186,9 +186,8 @@ def obstacles_within(outlines, normals, offsets, half_spaces: list[HalfSpace], t
         if below.any():
             cut = polygons.clip(vertices[below], half.normal, half.offset)
             width = max(cut.shape[1], vertices.shape[1])
-            widened = np.concatenate([vertices, np.repeat(vertices[:, -1:], width - vertices.shape[1], axis=1)], axis=1)
-            widened[below] = np.concatenate([cut, np.repeat(cut[:, -1:], width - cut.shape[1], axis=1)], axis=1)
-            vertices = widened
+            vertices = polygons.widen(vertices, width)
+            vertices[below] = polygons.widen(cut, width)
     following = np.roll(vertices, -1, axis=1)
     bounding = np.linalg.norm(following - vertices, axis=2) > 1e-3 * tolerance
     for half in half_spaces:

@@ -11,9 +11,8 @@ import numpy as np
 from .balance import Balance, lumen_balance
 from .errors import SceneError
 from .gather import gather
-from .projection import HalfSpace
+from .geometry import sight_of
 from .sources import gather_sources
-from .specular import GroupSight
 from .stages import Stage
 from .sunlight import Sunlight
 
@@ -223,17 +222,11 @@ class Result:
         deep = self.field.deep_emitted + (0.0 if initial else self.field.deep_reflected)
         for rows in _coplanar(place, normal, geometry.outlines.tolerance):
             n = normal[rows[0]]
-            sight = GroupSight(
-                geometry.outlines,
-                geometry.targets.globe.hemisphere(n),
-                HalfSpace(n, float(n @ place[rows[0]])).offset,
-                transfer.limits,
-            )
+            sight = sight_of(geometry, transfer.limits, n, float(n @ place[rows[0]]))
             for start in range(0, len(rows), 64):
                 some = rows[start : start + 64]
                 seen = gather(sight, place[some], geometry.targets)
-                sky = seen.sky_direct if seen.sky_specular is None else seen.sky_direct + seen.sky_specular
-                out[some] += np.pi * (sky @ self.sky) + seen.patches @ exitance
+                out[some] += np.pi * (seen.sky @ self.sky) + seen.patches @ exitance
                 out[some] += gather_sources(geometry.outlines, sources, place[some], n, transfer.limits)
                 if seen.deep is not None:
                     out[some] += seen.deep @ deep

@@ -223,9 +223,7 @@ def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
     total = sum(len(p) for p in pieces)
     if not total:
         raise SceneError(f"Surface '{name}' has no face with an area; mend or remove it")
-    width = max(p.shape[1] for p in pieces if len(p))
-    padded = [np.concatenate([p, np.repeat(p[:, -1:], width - p.shape[1], axis=1)], axis=1) for p in pieces if len(p)]
-    return np.concatenate(padded), np.concatenate(counts), np.concatenate(source), notes
+    return polygons.joined([p for p in pieces if len(p)]), np.concatenate(counts), np.concatenate(source), notes
 
 
 def _turned_edges(loops: list[np.ndarray], vertex_count: int) -> int:

@@ -18,12 +18,6 @@ from .projection import reflect, reflect_points
 _ROUNDING = 1e-12
 
 
-def _padded(shapes, width: int) -> np.ndarray:
-    """Polygons ``(m, v, 3)`` with the last vertex repeated up to a width."""
-    missing = width - shapes.shape[1]
-    return shapes if missing == 0 else np.pad(shapes, ((0, 0), (0, missing), (0, 0)), "edge")
-
-
 @dataclass(frozen=True, eq=False)
 class Screens:
     """What stands between receivers and the Sun's disc, in the receivers' mirrored space.
@@ -88,7 +82,7 @@ class Screens:
         width = max(self.vertices.shape[1], other.vertices.shape[1])
         return replace(
             self,
-            vertices=np.concatenate([_padded(s.vertices, width) for s in (self, other)]),
+            vertices=np.concatenate([polygons.widen(s.vertices, width) for s in (self, other)]),
             window=np.concatenate([self.window, other.window]),
             transmittance=np.concatenate([self.transmittance, other.transmittance]),
         )
@@ -180,7 +174,7 @@ class Pieces:
         parts = [p for p in parts if len(p.rows)] or parts[:1]
         width = max(p.shapes.shape[1] for p in parts)
         return cls(
-            np.concatenate([_padded(p.shapes, width) for p in parts]),
+            np.concatenate([polygons.widen(p.shapes, width) for p in parts]),
             np.concatenate([p.rows for p in parts]),
             np.concatenate([p.factor for p in parts]),
         )

@@ -140,13 +140,11 @@ def sky_column(targets: Targets, light: Daylight) -> np.ndarray:
 
 def patch_properties(geometry: Geometry) -> tuple[np.ndarray, np.ndarray]:
     """Diffuse reflectance and emitted exitance of each patch, both (p,) float."""
-    patch, surface = geometry.targets.patches.of_element, geometry.element_surface
-    count = geometry.targets.patches.count
+    patch, count = geometry.targets.patches.of_element, geometry.targets.patches.count
     reflectance, emitted = np.zeros(count), np.zeros(count)
     mine = patch >= 0
-    materials = geometry.surface_materials
-    reflectance[patch[mine]] = np.array([m.diffuse_reflectance for m in materials])[surface[mine]]
-    emitted[patch[mine]] = np.array([m.exitance for m in materials])[surface[mine]]
+    reflectance[patch[mine]] = geometry.of_elements("diffuse_reflectance")[mine]
+    emitted[patch[mine]] = geometry.of_elements("exitance")[mine]
     return reflectance, emitted
 
 
@@ -162,12 +160,12 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
         components["emitted"] = transfer.on_elements(gather_patches(transfer, emitted))
     elif emitters:
         deep_emitted = emitted
-        given = np.array([m.exitance for m in geometry.surface_materials])[geometry.element_surface]
-        found = _gather_bright(transfer, emitters, deep_emitted, 1.0, _Span(recorder, 0.1, 0.4))
+        given = geometry.of_elements("exitance")
+        found = _gather_bright(transfer, emitters, deep_emitted, 1.0, recorder.part(0.1, 0.4))
         components["emitted"], adjusted[0] = brought_home(transfer, found, given)
     sky = components["sky_direct"] + components["sky_specular"]
     smooth = sky + components["emitted"]
-    share = np.array([m.diffuse_reflectance for m in geometry.surface_materials])[geometry.element_surface]
+    share = geometry.of_elements("diffuse_reflectance")
     smooth = smooth + (sunlight.blur if sunny else sun)
     if cycles == 0 or not reflectance.any():
         components["interreflected"] = np.zeros(len(sun))
@@ -177,7 +175,7 @@ def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted,
     first = np.zeros(len(sun))
     if sunny:
         deep_reflected = reflectance * patch_means(geometry, sun - sunlight.blur)
-        first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, _Span(recorder, 0.4, 0.8))
+        first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, recorder.part(0.4, 0.8))
         first, adjusted[1] = brought_home(transfer, first, share * (sun - sunlight.blur))
     smooth, once = patch_means(geometry, smooth), patch_means(geometry, first)
 
@@ -236,20 +234,8 @@ def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], li
     return emitters, sunny
 
 
-@dataclass(frozen=True)
-class _Span:
-    """The stretch of a run's progress that one step covers."""
-
-    recorder: Recorder
-    first: float
-    last: float
-
-    def report(self, done: float) -> None:
-        self.recorder.report(self.first + (self.last - self.first) * done, "interreflection")
-
-
 def _gather_bright(
-    transfer: Transfer, sources: list[Source], deep: np.ndarray, times: float, span: _Span
+    transfer: Transfer, sources: list[Source], deep: np.ndarray, times: float, progress: Progress
 ) -> np.ndarray:
     """(e,) float: illuminance from bright polygons; by way of many mirrors, from their patches of exitance ``deep``."""
     geometry = transfer.geometry
@@ -270,7 +256,10 @@ def _gather_bright(
                 geometry.outlines, sources, nodes.points[rows], normal, transfer.limits, checkpoint
             )
 
-        run_parallel(work, chunks, transfer.threads, lambda part: span.report(begun + share * part))
+        def report(part: float) -> None:
+            progress(begun + share * part, "interreflection")
+
+        run_parallel(work, chunks, transfer.threads, report)
         done = begun + share
         # there is other light as well: where this is faint, its unevenness matters little
         return np.stack([found, np.full(len(found), found.mean())], axis=1)
@@ -350,11 +339,7 @@ def product(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
 
 def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:
     """(p,) float: area-weighted means over each patch's elements of values ``(e,)``."""
-    patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
-    mine = patch >= 0
-    count = geometry.targets.patches.count
-    total = np.bincount(patch[mine], weights=area[mine], minlength=count)
-    return np.bincount(patch[mine], weights=(area * values)[mine], minlength=count) / total
+    return geometry.patch_sums(geometry.fracture.element_areas * values) / geometry.patch_areas
 
 
 def _check_options(light, tolerance, cycles) -> None:

@@ -347,24 +347,16 @@ def _pass_screen(outlines, screen, row, shape, weight, planes, edges, overlaps):
         centre = shape.mean(axis=1)
         length = np.linalg.norm(centre, axis=1) * np.linalg.norm(plane)
         kept.append((row, shape, weight * material.transmittance_at((centre @ plane) / np.maximum(length, 1e-300))))
-    width = max([s.shape[1] for _, s, _ in kept if len(s)], default=1)
-    padded = [
-        np.concatenate([s, np.repeat(s[:, -1:], width - s.shape[1], axis=1)], axis=1) for _, s, _ in kept if len(s)
-    ]
-    if not padded:
+    kept = [part for part in kept if len(part[0])]
+    if not kept:
         return row[:0], np.zeros((0, 1, 3)), weight[:0]
-    return (
-        np.concatenate([r for r, s, _ in kept if len(s)]),
-        np.concatenate(padded),
-        np.concatenate([w for _, s, w in kept if len(s)]),
-    )
+    rows, shapes, weights = zip(*kept, strict=True)
+    return np.concatenate(rows), polygons.joined(shapes), np.concatenate(weights)
 
 
 def _choose(which, one, other):
     width = max(one.shape[1], other.shape[1])
-    one = np.concatenate([one, np.repeat(one[:, -1:], width - one.shape[1], axis=1)], axis=1)
-    other = np.concatenate([other, np.repeat(other[:, -1:], width - other.shape[1], axis=1)], axis=1)
-    return np.where(which[:, None, None], one, other)
+    return np.where(which[:, None, None], polygons.widen(one, width), polygons.widen(other, width))
 
 
 def _has_area(shapes) -> np.ndarray:
