@@ -51,7 +51,7 @@ def test_root_imports_without_blender():
 def test_solver_knows_nothing_of_blender_and_the_addon_imports_relatively():
     for path in (ROOT / "core").rglob("*.py"):
         assert not _imported(path) & {"bpy", "bmesh", "mathutils", "luzespecular_addon"}, path
-    for path in (ROOT / "luzespecular_addon").glob("*.py"):
+    for path in (ROOT / "luzespecular_addon").rglob("*.py"):
         assert not _imported(path) & {"luzespecular", "core", "luzespecular_addon"}, path
 
 
@@ -66,7 +66,7 @@ def _imported(path):
 
 
 def test_only_one_room_touches_the_buffers():
-    for path in (ROOT / "luzespecular_addon").glob("*.py"):
+    for path in (ROOT / "luzespecular_addon").rglob("*.py"):
         if path.name != "mesh_arrays.py":
             text = path.read_text(encoding="utf-8")
             assert "foreach_" not in text.replace("``foreach_", ""), path

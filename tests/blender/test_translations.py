@@ -52,8 +52,8 @@ def _is_digit(node):
 def interface_texts():
     """(context, text) of every text that the user can see."""
     texts = set()
-    for path in sorted(ADDON.glob("*.py")):
-        if path.name == "translations_pt_br.py" or path.name == "__main__.py":
+    for path in sorted(ADDON.rglob("*.py")):
+        if path.parent.name == "pt_br" or path.name == "__main__.py":
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
         for node in ast.walk(tree):
@@ -73,7 +73,7 @@ def interface_texts():
                         texts.add(("*", _literal(statement.value)))
                     if "bl_label" in targets:
                         texts.add(("Operator" if operator else "*", _literal(statement.value)))
-        if path.name in ("choices.py", "properties.py"):
+        if path.name == "choices.py" or path.parent.name == "properties":
             texts.update(("*", text) for text in _enum_items(tree))
     return texts
 
@@ -117,7 +117,7 @@ def test_the_solver_still_says_what_is_translated(addon):
     said = set(solver_messages())
     assert len(said) > 50
     unknown = [text for text in addon.translations.SOLVER if re.sub(r"{\w+}", "{}", text) not in said]
-    assert not unknown, "the solver's messages have changed: bring translations_pt_br.SOLVER in step"
+    assert not unknown, "the solver's messages have changed: bring translations/pt_br/solver.py in step"
 
 
 def test_messages_of_the_solver_are_translated(addon, monkeypatch):

@@ -1,19 +1,19 @@
-"""The buttons: solve, cancel, clear, copy a shader's values, save the table."""
+"""Solve in the background or at once, and cancel."""
 
-from pathlib import Path
+from __future__ import annotations
+
 from typing import ClassVar
 
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 from bpy.app.translations import pgettext_rpt as rpt_
-from bpy_extras.io_utils import ExportHelper
 
-from .. import core as luz
-from ..core import files, tables
-from . import display, materials, session, study
-from .job import Job
-from .notices import BadInput
-from .translations import solver_message
+from ... import core as luz
+from .. import session, study
+from ..job import Job
+from ..notices import BadInput
+from ..translations import solver_message
+from .reports import redraw, report_all
 
 _TICK = 0.05  # seconds between looks at the solver
 
@@ -91,7 +91,7 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         try:
             return study.collect(context)
         except BadInput as error:
-            _report_all(self, error.notices)
+            report_all(self, error.notices)
             return None
 
     def _conclude(self, context, job: Job):
@@ -106,9 +106,9 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         try:
             notices = study.finish(context, job.study, job.result)
         except BadInput as error:
-            _report_all(self, error.notices)
+            report_all(self, error.notices)
             return {"CANCELLED"}
-        _report_all(self, notices)
+        report_all(self, notices)
         count = len(job.result.illuminance)
         self.report({"INFO"}, rpt_("Solved: {title}; {count} faces").format(title=job.study.title, count=count))
         return {"FINISHED"}
@@ -121,13 +121,13 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         state.fraction, state.stage = latest
         text = iface_("LuzEspecular: {percent:.0f} % {stage} (Esc cancels)")
         context.workspace.status_text_set(text.format(percent=100.0 * state.fraction, stage=iface_(state.stage)))
-        _redraw(context)
+        redraw(context)
 
     def _tidy(self, context) -> None:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.luzespecular.running = False
         context.workspace.status_text_set(None)
-        _redraw(context)
+        redraw(context)
 
 
 class LUZESPECULAR_OT_cancel(bpy.types.Operator):
@@ -148,107 +148,4 @@ class LUZESPECULAR_OT_cancel(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class LUZESPECULAR_OT_clear_results(bpy.types.Operator):
-    """Remove all results from the scene: attributes, colours, the fine faces and the tables."""
-
-    bl_idname = "luzespecular.clear_results"
-    bl_label = "Clear Results"
-    bl_description = "Remove all results from the scene: attributes, colours, the fine faces and the tables"
-    bl_options: ClassVar[set[str]] = {"UNDO"}
-
-    @classmethod
-    def poll(cls, context):
-        """Grey without results."""
-        if display.has_results(context.scene):
-            return True
-        cls.poll_message_set("There are no results yet: solve first")
-        return False
-
-    def execute(self, context):
-        """Clear."""
-        display.clear(context.scene)
-        return {"FINISHED"}
-
-
-class LUZESPECULAR_OT_values_from_shader(bpy.types.Operator):
-    """Copy the values that the shader stands for, to change them by hand."""
-
-    bl_idname = "luzespecular.values_from_shader"
-    bl_label = "Copy from Shader"
-    bl_description = "Copy the values that the shader stands for, to change them by hand"
-    bl_options: ClassVar[set[str]] = {"UNDO"}
-
-    @classmethod
-    def poll(cls, context):
-        """Need a material."""
-        return getattr(context, "material", None) is not None
-
-    def execute(self, context):
-        """Copy."""
-        optics, settings = materials.from_shader(context.material), context.material.luzespecular
-        settings.source = "CUSTOM"
-        settings.diffuse_reflectance = optics.diffuse_reflectance
-        settings.specular_reflectance = optics.specular_reflectance
-        settings.regular_transmittance = optics.regular_transmittance
-        settings.exitance = optics.exitance
-        settings.use_refractive_index = optics.refractive_index is not None
-        if optics.refractive_index is not None:
-            settings.refractive_index = optics.refractive_index
-        return {"FINISHED"}
-
-
-class LUZESPECULAR_OT_save_table(bpy.types.Operator, ExportHelper):
-    """Save the table of surfaces as a CSV file."""
-
-    bl_idname = "luzespecular.save_table"
-    bl_label = "Save Table"
-    bl_description = "Save the table of surfaces as a CSV file"
-
-    filename_ext = ".csv"
-    filter_glob: bpy.props.StringProperty(default="*.csv", options={"HIDDEN"})
-
-    @classmethod
-    def poll(cls, context):
-        """Grey without results."""
-        if len(context.scene.luzespecular.results.rows):
-            return True
-        cls.poll_message_set("There are no results yet: solve first")
-        return False
-
-    def execute(self, context):
-        """Write the file."""
-        rows = (
-            tables.surface_row(
-                tables.SurfaceStatistics(row.name, row.side, row.area, row.minimum, row.mean, row.maximum)
-            )
-            for row in context.scene.luzespecular.results.rows
-        )
-        try:
-            files.write_csv(Path(self.filepath), tables.SURFACE_HEADER, rows)
-        except OSError as error:
-            self.report({"ERROR"}, rpt_("The table could not be saved: {error}").format(error=error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
-
-
-def _report_all(operator: bpy.types.Operator, notices) -> None:
-    for notice in notices:
-        operator.report({notice.level}, notice.text)
-
-
-def _redraw(context: bpy.types.Context) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
-
-
-_CLASSES = (
-    LUZESPECULAR_OT_solve,
-    LUZESPECULAR_OT_cancel,
-    LUZESPECULAR_OT_clear_results,
-    LUZESPECULAR_OT_values_from_shader,
-    LUZESPECULAR_OT_save_table,
-)
-
-register, unregister = bpy.utils.register_classes_factory(_CLASSES)
+CLASSES = (LUZESPECULAR_OT_solve, LUZESPECULAR_OT_cancel)

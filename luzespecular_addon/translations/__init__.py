@@ -7,12 +7,12 @@ import re
 import bpy
 from bpy.app.translations import pgettext_rpt as rpt_
 
-from .translations_pt_br import OPERATORS, SOLVER, STAGES, TEXTS
+from .pt_br import OPERATORS, SOLVER, STAGES, TEXTS
 
 CONTEXT = "LuzEspecular"
 """Context of the names of properties and of the items to choose from."""
 
-_BASE = __package__.rpartition(".")[0]
+_BASE = __package__.rsplit(".", 2)[0]
 
 
 def table() -> dict[str, dict[tuple[str, str], str]]:

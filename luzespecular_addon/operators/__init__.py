@@ -1,0 +1,11 @@
+"""The buttons; a room per subject."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import materials, results, solve
+
+_ROOMS = (solve, results, materials)
+
+register, unregister = bpy.utils.register_classes_factory([cls for room in _ROOMS for cls in room.CLASSES])

@@ -1,0 +1,11 @@
+"""The sidebar (3D View, tab LuzEspecular) and the panel of materials. Nothing is computed here."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import material, results, site, sky, solve, surfaces
+
+_ROOMS = (solve, site, sky, surfaces, results, material)
+
+register, unregister = bpy.utils.register_classes_factory([cls for room in _ROOMS for cls in room.CLASSES])

@@ -1,0 +1,55 @@
+"""Every setting and stored result of the extension, as properties of Blender's own data blocks; a room per subject.
+
+No postponed annotations here: Blender reads the annotations of property groups as values.
+"""
+
+import bpy
+from bpy.props import PointerProperty
+
+from . import accuracy, materials, progress, results, site, sky, surfaces
+from .accuracy import LuzAccuracySettings
+from .materials import LuzMaterialSettings
+from .progress import LuzProgress
+from .results import LuzDisplaySettings, LuzResults
+from .site import LuzSiteSettings
+from .sky import LuzSkySettings
+from .surfaces import LuzMeshSettings, LuzObjectSettings
+
+
+class LuzSceneSettings(bpy.types.PropertyGroup):
+    """All settings of a scene."""
+
+    site: PointerProperty(type=LuzSiteSettings)
+    sky: PointerProperty(type=LuzSkySettings)
+    accuracy: PointerProperty(type=LuzAccuracySettings)
+    display: PointerProperty(type=LuzDisplaySettings)
+    results: PointerProperty(type=LuzResults)
+
+
+_ROOMS = (materials, surfaces, site, sky, accuracy, results, progress)
+
+_CLASSES = (*(cls for room in _ROOMS for cls in room.CLASSES), LuzSceneSettings)
+
+_POINTERS = (
+    (bpy.types.Material, LuzMaterialSettings),
+    (bpy.types.Object, LuzObjectSettings),
+    (bpy.types.Mesh, LuzMeshSettings),
+    (bpy.types.Scene, LuzSceneSettings),
+    (bpy.types.WindowManager, LuzProgress),
+)
+
+
+def register() -> None:
+    """Add the properties to Blender's data blocks."""
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+    for owner, cls in _POINTERS:
+        owner.luzespecular = PointerProperty(type=cls)
+
+
+def unregister() -> None:
+    """Take the properties away; saved values stay in the file until it is saved without the extension."""
+    for owner, _cls in reversed(_POINTERS):
+        del owner.luzespecular
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,120 @@
+"""How results are shown, and what the last run left behind."""
+
+import bpy
+from bpy.props import CollectionProperty
+
+from .. import display
+from ..choices import QUANTITY_ITEMS, SCALE_ITEMS
+from .kinds import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+
+def _recolour(settings: "LuzDisplaySettings", _context: bpy.types.Context) -> None:
+    display.recolour(settings.id_data)
+
+
+def _switch_view(settings: "LuzDisplaySettings", _context: bpy.types.Context) -> None:
+    display.apply_view(settings.id_data)
+    display.recolour(settings.id_data)
+
+
+class LuzDisplaySettings(bpy.types.PropertyGroup):
+    """How results are shown."""
+
+    view: EnumProperty(
+        name="Show On",
+        description="What carries the false colours in the viewport",
+        items=(
+            (
+                "RESULTS",
+                "Fine Faces",
+                "A separate object that holds the solver's own fine faces; your objects are hidden meanwhile",
+            ),
+            ("OWN", "Own Meshes", "Your own faces, each with its mean illuminance"),
+        ),
+        default="RESULTS",
+        update=_switch_view,
+    )
+    show_backs: BoolProperty(
+        name="Backs",
+        description="Show the fine faces of backs; without them one looks through walls from outside into the room",
+        default=True,
+        update=_switch_view,
+    )
+    quantity: EnumProperty(
+        name="Quantity",
+        description="Which part of the light the fine faces show",
+        items=QUANTITY_ITEMS,
+        default="illuminance",
+        update=_recolour,
+    )
+    scale: EnumProperty(
+        name="Scale", description="False-colour scale", items=SCALE_ITEMS, default="VIRIDIS", update=_recolour
+    )
+    scaling: EnumProperty(
+        name="Steps",
+        description="How values are spread over the colours",
+        items=(
+            ("LOG", "Logarithmic", "Equal ratios are equally far apart, as the eye judges"),
+            ("LINEAR", "Linear", "Equal differences are equally far apart"),
+        ),
+        default="LOG",
+        update=_recolour,
+    )
+    use_fixed_range: BoolProperty(
+        name="Fixed Range", description="Keep the ends of the scale instead of fitting them", update=_recolour
+    )
+    low: FloatProperty(
+        name="From (lx)", description="Illuminance at the low end of the scale", min=0.0, default=10.0, update=_recolour
+    )
+    high: FloatProperty(
+        name="To (lx)",
+        description="Illuminance at the high end of the scale",
+        min=0.001,
+        default=10_000.0,
+        update=_recolour,
+    )
+    show_legend: BoolProperty(name="Legend", description="Draw the legend in the 3D viewport", default=True)
+
+
+class LuzSurfaceRow(bpy.types.PropertyGroup):
+    """Statistics of one side of a surface; `name` is the surface."""
+
+    side: StringProperty()
+    object_name: StringProperty()
+    area: FloatProperty()
+    minimum: FloatProperty()
+    mean: FloatProperty()
+    maximum: FloatProperty()
+    uniformity: FloatProperty()
+
+
+class LuzNotice(bpy.types.PropertyGroup):
+    """A remark about the last solved scene."""
+
+    level: StringProperty()
+    text: StringProperty()
+
+
+class LuzShading(bpy.types.PropertyGroup):
+    """Shading of a 3D viewport before it was switched to false colours; `name` is the screen."""
+
+    area: IntProperty()
+    type: StringProperty()
+    light: StringProperty()
+    color_type: StringProperty()
+    backface_culling: BoolProperty()
+
+
+class LuzResults(bpy.types.PropertyGroup):
+    """What the last run left behind, apart from the meshes."""
+
+    title: StringProperty(description="Date, hour and sky of the results")
+    rows: CollectionProperty(type=LuzSurfaceRow)
+    active_row: IntProperty()
+    notices: CollectionProperty(type=LuzNotice)
+    shadings: CollectionProperty(type=LuzShading)
+    legend_low: FloatProperty()
+    legend_high: FloatProperty()
+
+
+CLASSES = (LuzDisplaySettings, LuzSurfaceRow, LuzNotice, LuzShading, LuzResults)

@@ -1,0 +1,14 @@
+"""Brazilian Portuguese, a room per subject: names of operators, and all other texts of the interface."""
+
+from __future__ import annotations
+
+from . import accuracy, materials, notices, results, site, sky, solve, surfaces
+from .solver import SOLVER, STAGES
+
+_ROOMS = (site, sky, surfaces, materials, accuracy, solve, results, notices)
+
+OPERATORS = {english: text for room in _ROOMS for english, text in getattr(room, "OPERATORS", {}).items()}
+
+TEXTS = {english: text for room in _ROOMS for english, text in room.TEXTS.items()}
+
+__all__ = ["OPERATORS", "SOLVER", "STAGES", "TEXTS"]

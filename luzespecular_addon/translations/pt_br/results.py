@@ -1,0 +1,96 @@
+"""Results and how they are shown."""
+
+from __future__ import annotations
+
+OPERATORS = {
+    "Clear Results": "Limpar resultados",
+    "Save Table": "Salvar tabela",
+}
+
+TEXTS = {
+    "Results": "Resultados",
+    "What is shown, and the table of surfaces": "O que é mostrado, e a tabela das superfícies",
+    "No results yet": "Ainda não há resultados",
+    "Surface [lx]": "Superfície [lx]",
+    "Min": "Mín",
+    "Mean": "Média",
+    "Max": "Máx",
+    "{name}: {area:.2f} m², uniformity {uniformity:.2f}": "{name}: {area:.2f} m², uniformidade {uniformity:.2f}",
+    "{name} (back)": "{name} (verso)",
+    "Mean {mean:.1f} lx, from {minimum:.1f} to {maximum:.1f}": (
+        "Média {mean:.1f} lx, de {minimum:.1f} a {maximum:.1f}"
+    ),
+    "Illuminance": "Iluminância",
+    "not computed": "não calculado",
+    "Show On": "Mostrar em",
+    "What carries the false colours in the viewport": "O que leva as cores falsas na vista 3D",
+    "Fine Faces": "Faces finas",
+    "A separate object that holds the solver's own fine faces; your objects are hidden meanwhile": (
+        "Um objeto separado com as faces finas do próprio cálculo; enquanto isso seus objetos ficam ocultos"
+    ),
+    "Own Meshes": "Malhas próprias",
+    "Your own faces, each with its mean illuminance": "Suas próprias faces, cada uma com sua iluminância média",
+    "Backs": "Versos",
+    "Show the fine faces of backs; without them one looks through walls from outside into the room": (
+        "Mostrar as faces finas dos versos; sem elas vê-se de fora, através das paredes, o interior"
+    ),
+    "Quantity": "Grandeza",
+    "Which part of the light the fine faces show": "Que parte da luz as faces finas mostram",
+    "Total": "Total",
+    "All light, interreflection included": "Toda a luz, incluída a inter-reflexão",
+    "Initial": "Inicial",
+    "Before any diffuse reflection: sky, Sun and luminous surfaces, direct and by mirrors": (
+        "Antes de qualquer reflexão difusa: céu, Sol e superfícies luminosas, direto e por espelhos"
+    ),
+    "Sky, direct": "Céu, direto",
+    "Light straight from the sky and the ground": "Luz que vem direto do céu e do solo",
+    "Sky, by mirrors": "Céu, por espelhos",
+    "Sky light through mirrors and panes": "Luz do céu por espelhos e vidros",
+    "Sun, direct": "Sol, direto",
+    "Light straight from the Sun": "Luz que vem direto do Sol",
+    "Sun, by mirrors": "Sol, por espelhos",
+    "Sunlight through mirrors and panes": "Luz do Sol por espelhos e vidros",
+    "Luminous surfaces": "Superfícies luminosas",
+    "Light from surfaces that emit by themselves, their mirror images included": (
+        "Luz de superfícies que emitem por si, incluídas suas imagens em espelhos"
+    ),
+    "Interreflected": "Inter-refletida",
+    "Light that has met a diffuse surface": "Luz que encontrou alguma superfície difusa",
+    "Scale": "Escala",
+    "False-colour scale": "Escala de cores falsas",
+    "Viridis": "Viridis",
+    "Even steps of lightness, safe for the colour-blind": "Passos iguais de claridade, segura para daltônicos",
+    "Cividis": "Cividis",
+    "Blue to yellow, made for the colour-blind": "Do azul ao amarelo, feita para daltônicos",
+    "Inferno": "Inferno",
+    "Black through red to pale yellow, even steps of lightness": (
+        "Do preto ao amarelo pálido pelo vermelho, passos iguais de claridade"
+    ),
+    "Spectrum": "Espectro",
+    "Blue through green to red, as lighting programs made common": (
+        "Do azul ao vermelho pelo verde, como é comum em programas de iluminação"
+    ),
+    "Grey": "Cinza",
+    "Dark to light grey": "Do cinza escuro ao claro",
+    "Steps": "Passos",
+    "How values are spread over the colours": "Como os valores se distribuem pelas cores",
+    "Logarithmic": "Logarítmica",
+    "Equal ratios are equally far apart, as the eye judges": "Razões iguais ficam equidistantes, como o olho julga",
+    "Linear": "Linear",
+    "Equal differences are equally far apart": "Diferenças iguais ficam equidistantes",
+    "Fixed Range": "Intervalo fixo",
+    "Keep the ends of the scale instead of fitting them": "Manter os extremos da escala em vez de ajustá-los",
+    "From (lx)": "De (lx)",
+    "Illuminance at the low end of the scale": "Iluminância no extremo inferior da escala",
+    "To (lx)": "Até (lx)",
+    "Illuminance at the high end of the scale": "Iluminância no extremo superior da escala",
+    "Legend": "Legenda",
+    "Draw the legend in the 3D viewport": "Desenhar a legenda na vista 3D",
+    "Date, hour and sky of the results": "Data, hora e céu dos resultados",
+    "Remove all results from the scene: attributes, colours, the fine faces and the tables": (
+        "Remover todos os resultados da cena: atributos, cores, as faces finas e as tabelas"
+    ),
+    "Save the table of surfaces as a CSV file": "Salvar a tabela das superfícies em um arquivo CSV",
+    "There are no results yet: solve first": "Ainda não há resultados: calcule antes",
+    "The table could not be saved: {error}": "Não foi possível salvar a tabela: {error}",
+}
