@@ -7,7 +7,6 @@ as many parcels, differs from the first by more than that is wrong; what differs
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -51,9 +50,7 @@ class Trial:
     sky: np.ndarray
 
 
-def make_trial(
-    geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: int, report: Callable[[float], None]
-) -> Trial:
+def make_trial(geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: int) -> Trial:
     """Look once more from some nodes of each sheet.
 
     Parameters
@@ -62,7 +59,6 @@ def make_trial(
     nodes : Nodes
     limits : ChainLimits
     threads : int
-    report : callable(fraction)
 
     Returns
     -------
@@ -84,7 +80,7 @@ def make_trial(
         sky[chunk] = found.sky
 
     chunks = chunks_of_receivers(nodes.points[some], nodes.sheet[some], geometry.planes, 200)
-    run_parallel(work, chunks, threads, report)
+    run_parallel(work, chunks, threads, lambda done: None)
     return Trial(some, targets, patches, sky)
 
 

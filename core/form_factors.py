@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from .specular import ChainLimits, GroupSight
 
 _CHUNK_CELLS = 250_000
 """Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
+
+_ROOM = 1.5
+"""Room for rows, over those known to be needed."""
 
 _GROUPS = 32
 _ROWS = 256
@@ -39,7 +42,7 @@ class Rows:
 
     @classmethod
     def empty(cls, count: int, geometry: Geometry) -> Rows:
-        """Room for rows."""
+        """Room for rows, which costs no memory until they are entered."""
         targets = geometry.targets
         specular = (count, targets.columns) if geometry.outlines.any_specular else (0, targets.columns)
         return cls(
@@ -52,19 +55,17 @@ class Rows:
             {},
         )
 
-    def widened(self, count: int, geometry: Geometry) -> Rows:
-        """With room for more rows."""
+    def first(self, count: int) -> Rows:
+        """The first so many rows."""
+        return replace(self, **{f.name: getattr(self, f.name)[:count] for f in fields(self) if f.name != "deep"})
+
+    def kept(self, used: int, count: int, geometry: Geometry) -> Rows:
+        """Room for more rows, after the first ``used`` of these."""
         wide = Rows.empty(count, geometry)
         wide.deep.update(self.deep)
         for name in (f.name for f in fields(self) if f.name != "deep"):
-            mine = getattr(self, name)
-            getattr(wide, name)[: len(mine)] = mine
+            getattr(wide, name)[:used] = getattr(self, name)[:used]
         return wide
-
-    def kinds_of_light(self, geometry: Geometry) -> np.ndarray:
-        """(m, g) float: see `kinds_of_light`."""
-        sky = self.sky_direct + self.sky_specular if self.specular_rows.any() else self.sky_direct
-        return kinds_of_light(geometry, self.form_factors, sky)
 
     def put(self, members: np.ndarray, rows: Gathered) -> None:
         """Enter the rows of some nodes."""
@@ -82,7 +83,7 @@ class Rows:
 
 def gather_nodes(
     geometry: Geometry, limits: ChainLimits, times: float, threads: int, report: Callable[[float], None]
-) -> tuple[Nodes, Nodes, Rows]:
+) -> tuple[Nodes, Nodes, Rows, np.ndarray]:
     """Form factors of all nodes.
 
     Parameters
@@ -99,26 +100,30 @@ def gather_nodes(
     lattice, nodes : Nodes
         Those that every scene begins with; all.
     rows : Rows
+    unsure : (e,) float
+        See `Nodes.unsure`.
     """
     lattice = Nodes.of(geometry.fracture, geometry.lattices)
-    found = Rows.empty(0, geometry)
+    room = Rows.empty(int(_ROOM * len(lattice.points)), geometry)
     sights: dict[int, GroupSight] = {}
+    light = Light.none()
     done = 0.0
 
     def evaluate(nodes: Nodes, first: int) -> np.ndarray:
-        nonlocal found, done
-        found = found.widened(len(nodes.points), geometry)
-        members = np.arange(first, len(nodes.points))
+        nonlocal room, light, done
+        count = len(nodes.points)
+        if count > len(room.unlit):
+            room = room.kept(first, int(_ROOM * count), geometry)
+        members = np.arange(first, count)
         begun, share = done, (1.0 - done) * (0.6 if first == 0 else 0.7)
-        _gather_some(
-            geometry, nodes, members, found, sights, limits, threads, lambda part: report(begun + share * part)
-        )
+        _gather_some(geometry, nodes, members, room, sights, limits, threads, lambda part: report(begun + share * part))
         done = begun + share
-        return found.kinds_of_light(geometry)
+        light = light.followed(Light.of(geometry, room, members))
+        return light.kinds()
 
     nodes = settled(lattice, geometry.fracture, evaluate, times)
     report(1.0)
-    return lattice, nodes, found
+    return lattice, nodes, room.first(len(nodes.points)), nodes.unsure(light.kinds(), geometry.fracture)
 
 
 def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, limits, threads: int, report) -> None:
@@ -141,26 +146,50 @@ def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, 
     run_parallel(work, chunks, threads, report)
 
 
-def kinds_of_light(geometry: Geometry, form_factors: np.ndarray, sky_factors: np.ndarray) -> np.ndarray:
-    """(m, g) float: what nodes get from four sides of the sky and from surfaces, about as bright as these will be.
+@dataclass(frozen=True, eq=False)
+class Light:
+    """What nodes get from four sides of the sky ``(m, 4)`` and from groups of surfaces ``(m, g)``, both float."""
 
-    The sides blend into each other: between sharp ones light would seem to change from node to node where it does not.
-    """
-    targets, planes = geometry.targets, geometry.planes
-    east, north = targets.globe.directions[: targets.sky_parcels, :2].T
-    sides = np.zeros((targets.columns, 4), np.float32)
-    sides[:-1] = 0.25 * (1 + np.stack([east, -east, north, -north], axis=1))
-    sides[-1] = 0.25
-    sky = sky_factors @ sides
-    patches, cuts = targets.patches.count, geometry.fracture
-    sheet = np.zeros(patches, np.int64)
-    mine = targets.patches.of_element >= 0
-    sheet[targets.patches.of_element[mine]] = cuts.element_sheet[mine]
-    groups = np.zeros((patches, _GROUPS), np.float32)
-    groups[np.arange(patches), sheet * _GROUPS // (2 * len(planes.sheet_surface))] = 1.0
-    reflected = form_factors @ groups
-    share = _OF_REFLECTED if sky.sum() > 1e-3 * max(float(reflected.sum()), 1e-300) else 1.0
-    return np.concatenate([sky, share * reflected], axis=1).astype(float)
+    sky: np.ndarray
+    reflected: np.ndarray
+
+    @classmethod
+    def none(cls) -> Light:
+        """That of no nodes."""
+        return cls(np.zeros((0, 4)), np.zeros((0, _GROUPS)))
+
+    @classmethod
+    def of(cls, geometry: Geometry, rows: Rows, members: np.ndarray) -> Light:
+        """That of some nodes, all sky and all surfaces being equally bright.
+
+        The sides of the sky blend into each other: between sharp ones light would seem to change from node to node
+        where it does not.
+        """
+        targets, planes = geometry.targets, geometry.planes
+        east, north = targets.globe.directions[: targets.sky_parcels, :2].T
+        sides = np.zeros((targets.columns, 4), np.float32)
+        sides[:-1] = 0.25 * (1 + np.stack([east, -east, north, -north], axis=1))
+        sides[-1] = 0.25
+        patches, cuts = targets.patches.count, geometry.fracture
+        sheet = np.zeros(patches, np.int64)
+        mine = targets.patches.of_element >= 0
+        sheet[targets.patches.of_element[mine]] = cuts.element_sheet[mine]
+        groups = np.zeros((patches, _GROUPS), np.float32)
+        groups[np.arange(patches), sheet * _GROUPS // (2 * len(planes.sheet_surface))] = 1.0
+        some = slice(members[0], members[-1] + 1) if len(members) else slice(0, 0)
+        sky = rows.sky_direct[some] @ sides
+        mirrored = np.flatnonzero(rows.specular_rows[some])
+        sky[mirrored] += rows.sky_specular[some][mirrored] @ sides
+        return cls(sky.astype(float), (rows.form_factors[some] @ groups).astype(float))
+
+    def followed(self, other: Light) -> Light:
+        """That of these nodes and of others after them."""
+        return Light(np.concatenate([self.sky, other.sky]), np.concatenate([self.reflected, other.reflected]))
+
+    def kinds(self) -> np.ndarray:
+        """(m, 4 + g) float: all kinds of light, surfaces about as bright as they will be."""
+        share = _OF_REFLECTED if self.sky.sum() > 1e-3 * max(float(self.reflected.sum()), 1e-300) else 1.0
+        return np.concatenate([self.sky, share * self.reflected], axis=1)
 
 
 def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -34,8 +35,6 @@ class Transfer:
         The receivers, and how elements' values follow from theirs.
     lattice : Nodes
         The first of them alone, before any were added where interpolation is in doubt.
-    trial : Trial
-        A coarser look from some of the nodes.
     unsure : (e,) float
         What interpolation between nodes leaves open, over all light.
     conservation : Conservation
@@ -73,7 +72,6 @@ class Transfer:
     truncated: np.ndarray
     nodes: Nodes
     lattice: Nodes
-    trial: Trial
     unsure: np.ndarray
     conservation: Conservation
     times: float
@@ -85,6 +83,11 @@ class Transfer:
     def patch_factors(self) -> np.ndarray:
         """(p, p) float: form factors from patch to patch, area-weighted means over each."""
         return self.exchange.factors
+
+    @cached_property
+    def trial(self) -> Trial:
+        """A coarser look from some of the nodes, for those who ask for errors; found when first asked for."""
+        return make_trial(self.geometry, self.nodes, self.limits, self.threads)
 
     def on_elements(self, values: np.ndarray) -> np.ndarray:
         """Values on the elements ``(e,)`` from values at the nodes ``(m,)``."""
@@ -206,11 +209,9 @@ def _prepared(
     _check_memory(geometry, memory)
     stage = "visibility and form factors"
     with recorder.stage(stage, 0.02):
-        lattice, nodes, gathered = gather_nodes(
-            geometry, limits, times, threads, lambda done: recorder.report(0.02 + 0.95 * done, stage)
+        lattice, nodes, gathered, unsure = gather_nodes(
+            geometry, limits, times, threads, lambda done: recorder.report(0.02 + 0.97 * done, stage)
         )
-        trial = make_trial(geometry, nodes, limits, threads, lambda done: recorder.report(0.97 + 0.02 * done, stage))
-        unsure = nodes.unsure(gathered.kinds_of_light(geometry), geometry.fracture)
         conservation = Conservation.of(geometry, nodes, gathered)
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
@@ -237,7 +238,6 @@ def _prepared(
         truncated=gathered.truncated,
         nodes=nodes,
         lattice=lattice,
-        trial=trial,
         unsure=unsure,
         conservation=conservation,
         times=times,

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from layout_samples import triangle_rule
 
 import luzespecular as luz
-from luzespecular.form_factors import Conservation, Rows, patch_means, trusted
+from luzespecular.form_factors import Conservation, Light, Rows, patch_means, trusted
 from luzespecular.solve import gather_patches
 
 WHITE = luz.Material(diffuse_reflectance=0.5)
@@ -46,6 +46,11 @@ def rows_of(transfer):
     return Rows(transfer.form_factors, transfer.sky_direct, mirrored, seen, transfer.unlit, transfer.truncated, deep)
 
 
+def kinds_of_light(transfer):
+    every = np.arange(len(transfer.unlit))
+    return Light.of(transfer.geometry, rows_of(transfer), every).kinds()
+
+
 def weights_of(nodes):
     """(e, m) float: the elements' weights, written out."""
     matrix = np.zeros((len(nodes.weights.start) - 1, len(nodes.points)))
@@ -79,7 +84,7 @@ def test_a_scene_without_patches_has_no_means():
 def test_kinds_of_light_share_out_what_nodes_see(name, request):
     """Four blended sides of the sky make the whole; surfaces count by about how bright they will be."""
     transfer = request.getfixturevalue(name)
-    kinds = rows_of(transfer).kinds_of_light(transfer.geometry)
+    kinds = kinds_of_light(transfer)
     assert (kinds >= 0).all() and len(kinds) == len(transfer.nodes.points)
     sky = transfer.sky_direct.sum(axis=1, dtype=float)
     sky[transfer.specular_rows] += transfer.sky_specular.sum(axis=1)
@@ -91,7 +96,7 @@ def test_kinds_of_light_share_out_what_nodes_see(name, request):
 
 def test_sides_of_the_sky_are_told_apart(open_room):
     """The west wall sees the sky to the east and north of it."""
-    kinds = rows_of(open_room).kinds_of_light(open_room.geometry)[:, :4]
+    kinds = kinds_of_light(open_room)[:, :4]
     surface = open_room.geometry.element_surface[open_room.nodes.element]
     names = open_room.geometry.planes.surfaces
     east, west, north, south = kinds[surface == names.index("west")].mean(axis=0)
