@@ -4,7 +4,7 @@ from . import solve as _solve  # noqa: F401 - before the function of this name, 
 from .availability import availability, default_daylight
 from .balance import Balance
 from .daylight import Daylight
-from .errors import Cancelled, LuzEspecularError, SceneError
+from .errors import Cancelled, LuzEspecularError, SceneError, TransferFileError
 from .globe import Globe
 from .materials import Material
 from .result import Result
@@ -19,7 +19,7 @@ from .sun import (
     sun_position_solar,
     sunrise_sunset,
 )
-from .transfer import Transfer, prepare
+from .transfer import Transfer, load, prepare
 
 __version__ = "0.1.0"
 
@@ -44,12 +44,14 @@ __all__ = [
     "SceneError",
     "Sun",
     "Transfer",
+    "TransferFileError",
     "UniformSky",
     "__version__",
     "availability",
     "declination",
     "default_daylight",
     "equation_of_time",
+    "load",
     "prepare",
     "solar_time",
     "solve",

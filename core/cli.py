@@ -92,6 +92,7 @@ def parser() -> argparse.ArgumentParser:
     add("--cycles", type=int, metavar="N", help="diffuse reflections (default: all that count)")
     add("--threads", type=int, metavar="N", help="default: as many as there are cores")
     add("--memory", type=float, metavar="GB", help="refuse what needs more")
+    add("--cache", type=Path, metavar="FILE", help="keep what takes long there, and use it where it still holds")
     add("--format", type=_formats, default=("csv",), metavar="F[,F…]", help="csv, json, npz (default: csv)")
     add("--no-faces", action="store_true", help="leave the single faces out of CSV and JSON")
     sun = actions.add_parser(
@@ -147,10 +148,14 @@ def _solve(options: argparse.Namespace) -> None:
             max_area=options.max_area,
             threads=options.threads,
             memory=None if options.memory is None else 1e9 * options.memory,
+            cache=options.cache,
             progress=progress,
         )
     finally:
         progress.end()
+    for stage in transfer.stages:
+        if options.cache is not None and (stage.name == "cache" or "taken from" in stage.skipped) and stage.skipped:
+            print(f"{stage.name}: {stage.skipped}")
     stem = options.scene.stem
     surface_rows: list[tuple] = []
     point_rows: list[tuple] = []

@@ -11,3 +11,7 @@ class SceneError(LuzEspecularError, ValueError):
 
 class Cancelled(LuzEspecularError):
     """The progress callback asked to stop; nothing was changed."""
+
+
+class TransferFileError(LuzEspecularError):
+    """A saved transfer that is stale, damaged, or none at all; the message names the file and the remedy."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ import numpy as np
 from .errors import SceneError
 from .materials import Material
 from .scene import Scene
+from .writing import complete
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,17 +155,6 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         if sum(key == other for other, _ in pairs) > 1:
             raise SceneError(f"'{key}' is there twice in one object; rename or remove one")
     return entries
-
-
-@contextmanager
-def complete(path: Path) -> Iterator[Path]:
-    """Give a name to write under; the file takes its own name when all is written, and is gone where that fails."""
-    unfinished = path.with_name(path.name + ".part")
-    try:
-        yield unfinished
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[str | float]]) -> Path:

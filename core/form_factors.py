@@ -249,7 +249,7 @@ class Conservation:
     def of(cls, geometry: Geometry, nodes: Nodes, rows: Rows) -> Conservation:
         """Compare what patches send out with what nodes receive."""
         area = geometry.fracture.element_areas
-        kept = area * (geometry.of_elements("hemispherical_absorptance") + geometry.of_elements("diffuse_reflectance"))
+        kept = geometry.areas_kept
         lost = rows.sky_direct.sum(axis=1, dtype=float) + rows.unlit + rows.truncated
         if rows.specular_rows.any():
             lost += rows.sky_specular.sum(axis=1, dtype=float)

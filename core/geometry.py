@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -54,6 +54,12 @@ class Geometry:
         """(e,) float: a property of the elements' materials."""
         return np.array([getattr(m, name) for m in self.surface_materials], float)[self.element_surface]
 
+    @property
+    def areas_kept(self) -> np.ndarray:
+        """(e,) float: elements' areas times the share of light that mirrors and panes do not pass on [m²]."""
+        shares = self.of_elements("hemispherical_absorptance") + self.of_elements("diffuse_reflectance")
+        return self.fracture.element_areas * shares
+
     def patch_sums(self, values: np.ndarray) -> np.ndarray:
         """(p,) float: sums over each patch's elements of values ``(e,)``."""
         patch = self.targets.patches.of_element
@@ -64,6 +70,12 @@ class Geometry:
     def patch_areas(self) -> np.ndarray:
         """(p,) float [m²]."""
         return self.patch_sums(self.fracture.element_areas)
+
+    def with_materials(self, scene: Scene) -> Geometry:
+        """The same shapes with the materials of a scene of the same surfaces."""
+        materials = [surface.material for surface in scene.surfaces.values()]
+        of_outlines = [materials[k] for k in self.planes.sheet_surface[self.planes.outline_sheet]]
+        return replace(self, outlines=replace(self.outlines, materials=of_outlines), surface_materials=materials)
 
 
 def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | None, times: float = 1.0) -> Geometry:

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-import math
-import os
-from dataclasses import dataclass, field
+import logging
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
 from .daylight import Daylight
-from .errors import SceneError
+from .errors import SceneError, TransferFileError
 from .estimate import Trial, make_trial
 from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
+from .fingerprint import Fingerprint
 from .form_factors import Conservation, Exchange, gather_nodes, patch_means
 from .geometry import Geometry, make_geometry
 from .globe import Globe
 from .nodes import Nodes
+from .options import Options, checked_memory, checked_scene, checked_threads
 from .planes import find_planes
 from .scene import Scene
 from .sky import UniformSky
 from .specular import ChainLimits, exact_mirrors
 from .stages import Progress, Recorder, Stage
+
+logger = logging.getLogger(__name__)
+
+_LOOKING = "visibility and form factors"
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +63,8 @@ class Transfer:
         Form factors to sides without diffuse light, and of chains cut off.
     limits : ChainLimits
     threads : int
+    fingerprint : Fingerprint
+        What scene and options it holds for.
     stages : tuple of Stage
     """
 
@@ -77,6 +85,7 @@ class Transfer:
     times: float
     limits: ChainLimits
     threads: int
+    fingerprint: Fingerprint
     stages: tuple[Stage, ...] = field(default=())
 
     @property
@@ -129,6 +138,59 @@ class Transfer:
 
         return solve_light(self, light, tolerance=tolerance, cycles=cycles, progress=progress)
 
+    def with_materials(self, scene: Scene) -> Transfer:
+        """The same form factors with other diffuse reflectances and exitances: nothing is looked at again.
+
+        Parameters
+        ----------
+        scene : Scene
+            The same surfaces in the same order; what mirrors, transmits, reflects diffusely or shines must be the
+            same, and by what share they mirror and transmit.
+
+        Returns
+        -------
+        Transfer
+            As `prepare` would give it. With ``accuracy``, fineness stays as it was chosen for the former materials.
+
+        Raises
+        ------
+        SceneError
+            Where anything else differs; the message says what.
+        """
+        options = Options(**self.fingerprint.options)
+        difference = self.fingerprint.difference(Fingerprint.of(checked_scene(scene), options))
+        if difference:
+            raise SceneError(f"This transfer was prepared for {difference}; prepare the scene anew")
+        geometry = self.geometry.with_materials(scene)
+        note = Stage(_LOOKING, 0.0, "shapes, mirrors and panes are those of an earlier transfer")
+        return replace(
+            self,
+            geometry=geometry,
+            conservation=replace(self.conservation, kept=geometry.areas_kept),
+            stages=(*(stage for stage in self.stages if stage.skipped and stage.name != _LOOKING), note),
+        )
+
+    def save(self, path) -> Path:
+        """Write the transfer to a file, for `load` or ``prepare(scene, cache=path)``.
+
+        Parameters
+        ----------
+        path : str or path
+            Written aside and renamed: the file is complete or not there.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        OSError
+            Where it cannot be written.
+        """
+        from .store import save_transfer
+
+        return save_transfer(self, path)
+
 
 def prepare(
     scene: Scene,
@@ -139,6 +201,8 @@ def prepare(
     threads: int | None = None,
     memory: float | None = None,
     accuracy: float | None = None,
+    reuse: Transfer | None = None,
+    cache: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Transfer:
     """Find everything that geometry and materials decide.
@@ -161,6 +225,11 @@ def prepare(
         Relative error that about 95 of 100 faces shall keep below, 0.001 to 0.2 (see `Result.error`). Bands, receivers,
         patches and, where ``max_area`` is not given, faces are then chosen for it from a trial solution; ``bands`` has
         no meaning.
+    reuse : Transfer, optional
+        An earlier one, whose form factors are kept where they hold (see `Transfer.with_materials`); where they do not,
+        the scene is prepared anew, and ``stages`` say why.
+    cache : path, optional
+        A file as by `Transfer.save`, used in the same way; where it does not hold it is written anew.
     progress : callable(fraction, stage_name) -> bool, optional
         True to go on, False to cancel.
 
@@ -172,29 +241,115 @@ def prepare(
     ------
     SceneError
         Where the scene is empty or an option is out of range; the message names it and the remedy.
+    OSError
+        Where the cache cannot be read.
     Cancelled
         Where ``progress`` says so.
     """
-    max_area, specular_cutoff, threads, memory = _checked_options(scene, max_area, specular_cutoff, threads, memory)
-    accuracy = _checked_accuracy(accuracy)
-    Globe(bands)  # refused before any work
+    checked_scene(scene)
+    options = Options.checked(bands=bands, max_area=max_area, specular_cutoff=specular_cutoff, accuracy=accuracy)
+    threads, memory, cache = checked_threads(threads), checked_memory(memory), _checked_cache(cache)
     recorder = Recorder(progress)
-    common = (max_area, specular_cutoff, threads, memory)
-    if accuracy is None:
-        return _prepared(scene, bands, 1.0, *common, recorder)
-    times = times_for(accuracy)
-    with recorder.stage("trial solution", 0.0):
-        trial = _prepared(scene, TRIAL_BANDS, min(times, TRIAL_TIMES), *common, Recorder(recorder.part(0.0, 0.2)))
-        bands = bands_for(accuracy, TRIAL_BANDS, trial.errors_by_globe(), trial.geometry.fracture.element_areas)
-    return _prepared(scene, bands, times, *common, Recorder(recorder.part(0.2, 1.0), recorder.stages))
+    kept = _kept(scene, options, threads, reuse, cache, recorder)
+    if kept is not None:
+        recorder.report(1.0, "prepared")
+        return kept
+    common = (options, threads, memory)
+    if options.accuracy is None:
+        transfer = _prepared(scene, options.bands, 1.0, *common, recorder)
+    else:
+        times = times_for(options.accuracy)
+        with recorder.stage("trial solution", 0.0):
+            trial = _prepared(scene, TRIAL_BANDS, min(times, TRIAL_TIMES), *common, Recorder(recorder.part(0.0, 0.2)))
+            errors, areas = trial.errors_by_globe(), trial.geometry.fracture.element_areas
+            bands = bands_for(options.accuracy, TRIAL_BANDS, errors, areas)
+        transfer = _prepared(scene, bands, times, *common, Recorder(recorder.part(0.2, 1.0), recorder.stages))
+    return transfer if cache is None else _cached(transfer, cache)
+
+
+def load(path, scene: Scene, *, threads: int | None = None) -> Transfer:
+    """Load a transfer that `Transfer.save` wrote.
+
+    Parameters
+    ----------
+    path : str or path
+    scene : Scene
+        That which it was prepared for; diffuse reflectances and exitances may have changed.
+    threads : int, optional
+        Default: as many as the machine has cores.
+
+    Returns
+    -------
+    Transfer
+        With the options that it was prepared with.
+
+    Raises
+    ------
+    TransferFileError
+        Where the file is stale, damaged, or no transfer; the message names it and the remedy.
+    OSError
+        Where it cannot be read.
+    """
+    from .store import load_transfer
+
+    return load_transfer(path, checked_scene(scene), None, checked_threads(threads))
+
+
+def _kept(scene: Scene, options: Options, threads: int, reuse, cache: Path | None, recorder: Recorder):
+    """An earlier transfer, or one from a file, if it holds for the scene; else None, with the reason in the stages."""
+    if reuse is not None:
+        if not isinstance(reuse, Transfer):
+            raise SceneError(f"reuse must be a luzespecular.Transfer, not {type(reuse).__name__}")
+        difference = reuse.fingerprint.difference(Fingerprint.of(scene, options))
+        if not difference:
+            return replace(reuse.with_materials(scene), threads=threads)
+        recorder.skip("reuse", f"the transfer was prepared for {difference}")
+    if cache is not None:
+        from .store import load_transfer
+
+        if not cache.exists():
+            recorder.skip("cache", f"'{cache}' is not there yet")
+            return None
+        try:
+            with recorder.stage("cache", 0.0):
+                kept = load_transfer(cache, scene, options, threads)
+        except TransferFileError as error:
+            recorder.skip("cache", str(error))
+            return None
+        note = Stage(_LOOKING, 0.0, f"taken from '{cache}'")
+        return replace(kept, stages=(*recorder.stages, note))
+    return None
+
+
+def _cached(transfer: Transfer, cache: Path) -> Transfer:
+    """The transfer, saved; a disk that is full is no reason to lose it."""
+    recorder = Recorder(stages=list(transfer.stages))
+    try:
+        with recorder.stage("cache", 1.0):
+            transfer.save(cache)
+    except OSError as error:
+        logger.warning("The transfer was not saved: %s", error)
+        recorder.skip("cache", f"not saved: {error}")
+    return replace(transfer, stages=tuple(recorder.stages))
+
+
+def _checked_cache(cache) -> Path | None:
+    if cache is None:
+        return None
+    try:
+        path = Path(cache)
+    except TypeError:
+        raise SceneError(f"cache must be the path of a file, not {cache!r}") from None
+    if path.is_dir() or not path.absolute().parent.is_dir():
+        raise SceneError(f"cache '{path}' must be a file in a folder that exists")
+    return path
 
 
 def _prepared(
     scene: Scene,
     bands: int,
     times: float,
-    max_area: float | None,
-    specular_cutoff: float,
+    options: Options,
     threads: int,
     memory: float | None,
     recorder: Recorder,
@@ -204,13 +359,12 @@ def _prepared(
     with recorder.stage("planes", 0.0):
         planes = find_planes(scene)
     with recorder.stage("fracture", 0.01):
-        geometry = make_geometry(scene, planes, globe, max_area, times)
-    limits = ChainLimits(specular_cutoff, exact_mirrors(geometry.outlines))
+        geometry = make_geometry(scene, planes, globe, options.max_area, times)
+    limits = ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines))
     _check_memory(geometry, memory)
-    stage = "visibility and form factors"
-    with recorder.stage(stage, 0.02):
+    with recorder.stage(_LOOKING, 0.02):
         lattice, nodes, gathered, unsure = gather_nodes(
-            geometry, limits, times, threads, lambda done: recorder.report(0.02 + 0.97 * done, stage)
+            geometry, limits, times, threads, lambda done: recorder.report(0.02 + 0.97 * done, _LOOKING)
         )
         conservation = Conservation.of(geometry, nodes, gathered)
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
@@ -243,46 +397,9 @@ def _prepared(
         times=times,
         limits=limits,
         threads=threads,
+        fingerprint=Fingerprint.of(scene, options),
         stages=tuple(recorder.stages),
     )
-
-
-def _checked_options(scene, max_area, specular_cutoff, threads, memory):
-    if not isinstance(scene, Scene):
-        raise SceneError(f"prepare needs a luzespecular.Scene, not {type(scene).__name__}")
-    if not scene.surfaces:
-        raise SceneError("The scene has no surfaces; add at least one with scene.add(name, vertices, material)")
-    if max_area is not None:
-        max_area = _positive("max_area", max_area, infinite=True)
-    cutoff = _positive("specular_cutoff", specular_cutoff)
-    if cutoff > 1:
-        raise SceneError(f"specular_cutoff is {cutoff:g}; give a product of reflectances of at most 1 (1e-3 is usual)")
-    if threads is None:
-        threads = os.cpu_count() or 1
-    elif isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
-        raise SceneError(f"threads must be a whole number of at least 1, not {threads!r}")
-    if memory is not None:
-        memory = _positive("memory", memory, infinite=True)
-    return max_area, cutoff, int(threads), memory
-
-
-def _checked_accuracy(accuracy) -> float | None:
-    if accuracy is None:
-        return None
-    number = _positive("accuracy", accuracy)
-    if not 1e-3 <= number <= 0.2:
-        raise SceneError(f"accuracy is {number:g}; give a relative error from 0.001 to 0.2 (0.01 is usual)")
-    return number
-
-
-def _positive(name: str, value, infinite: bool = False) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise SceneError(f"{name} must be a number, not {value!r}") from None
-    if not number > 0 or (math.isinf(number) and not infinite):
-        raise SceneError(f"{name} must be above 0, not {number:g}")
-    return number
 
 
 def _check_memory(geometry: Geometry, memory: float | None) -> None:

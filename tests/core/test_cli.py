@@ -153,6 +153,17 @@ def test_the_clock_needs_a_longitude(scene, tmp_path, capsys):
     assert "--longitude" in capsys.readouterr().err
 
 
+def test_a_cache_is_used_again_and_told(scene, tmp_path, capsys):
+    cache = ["--cache", str(tmp_path / "cache.npz")]
+    assert run(scene, tmp_path / "a", *cache) == 0
+    assert "not there yet" in capsys.readouterr().out
+    assert run(scene, tmp_path / "b", *cache) == 0
+    assert "taken from" in capsys.readouterr().out
+    a, b = (table(tmp_path / name / "casa à luz_surfaces.csv") for name in "ab")
+    assert a == b
+    assert run(scene, tmp_path / "c", "--cache", str(tmp_path / "none" / "cache.npz")) == 2
+
+
 def test_a_bad_scene_exits_with_2(scene, tmp_path, capsys):
     scene.write_text(json.dumps({"surfaces": []}), encoding="utf-8")
     assert run(scene, tmp_path / "out") == 2

@@ -1,0 +1,214 @@
+"""Store: transfers saved to files and loaded again.
+
+A file is NumPy's .npz of plain arrays. Its first, ``header``, is JSON: format, fingerprint, sizes. Geometry is not in
+it: that follows from the scene in a moment, and what the file holds is used only where it fits.
+"""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import TransferFileError
+from .fingerprint import Fingerprint
+from .form_factors import Conservation, Exchange
+from .geometry import Geometry, make_geometry
+from .globe import Globe
+from .nodes import Nodes, Weights
+from .options import Options
+from .planes import find_planes
+from .scene import Scene
+from .specular import ChainLimits, exact_mirrors
+from .stages import Stage
+from .transfer import Transfer
+from .writing import complete
+
+FORMAT = 1
+"""Raised with every change of what files hold or of how it is found."""
+
+_ARRAYS = (
+    "form_factors",
+    "sky_direct",
+    "sky_specular",
+    "specular_rows",
+    "deep_factors",
+    "deep_rows",
+    "unlit",
+    "truncated",
+    "unsure",
+)
+_WEIGHTS = ("weights", "around")
+
+
+def save_transfer(transfer: Transfer, path) -> Path:
+    """See `Transfer.save`."""
+    path = Path(path)
+    header = {
+        "format": FORMAT,
+        "fingerprint": asdict(transfer.fingerprint),
+        "bands": transfer.geometry.targets.globe.bands,
+        "times": transfer.times,
+        "sizes": _sizes(transfer.geometry),
+        "stages": [asdict(stage) for stage in transfer.stages],
+    }
+    arrays = {name: getattr(transfer, name) for name in _ARRAYS}
+    arrays["lattice_nodes"] = np.array(len(transfer.lattice.points))
+    for name in ("points", "element"):
+        arrays[f"nodes_{name}"] = getattr(transfer.nodes, name)
+    for name in _WEIGHTS:
+        for part in fields(Weights):
+            arrays[f"{name}_{part.name}"] = getattr(getattr(transfer.nodes, name), part.name)
+    arrays["exchange_factors"] = transfer.exchange.factors.astype(np.float32)  # sums of float32, all of their digits
+    arrays["exchange_spread"] = transfer.exchange.spread
+    for name in ("lost", "spread", "missing"):
+        arrays[f"conservation_{name}"] = getattr(transfer.conservation, name)
+    text = json.dumps(header).encode()
+    with complete(path) as unfinished, unfinished.open("wb") as file:
+        np.savez(file, header=np.frombuffer(text, np.uint8), **arrays)
+    return path
+
+
+def load_transfer(path, scene: Scene, options: Options | None, threads: int) -> Transfer:
+    """Read a transfer for a scene.
+
+    Parameters
+    ----------
+    path : path
+    scene : Scene
+    options : Options or None
+        Those that it must have been prepared with; None = whatever they were.
+    threads : int
+
+    Returns
+    -------
+    Transfer
+
+    Raises
+    ------
+    TransferFileError
+        Where the file is stale, damaged, or no transfer.
+    OSError
+        Where it cannot be read.
+    """
+    path = Path(path)
+    remedy = "delete it, prepare the scene and save anew"
+    try:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
+            if not isinstance(content, np.lib.npyio.NpzFile) or "header" not in content.files:
+                raise TransferFileError(f"'{path}' is no saved transfer; name another file")
+            header = _header(content["header"])
+            if header["format"] != FORMAT:
+                raise TransferFileError(f"'{path}' was saved by another version of the program; {remedy}")
+            kept = Options(**header["fingerprint"]["options"])
+            known = Fingerprint(asdict(kept), tuple(map(tuple, header["fingerprint"]["surfaces"])))
+            difference = known.difference(Fingerprint.of(scene, options or kept))
+            if difference:
+                raise TransferFileError(f"'{path}' is stale: it was saved for {difference}; {remedy}")
+            return _rebuilt(scene, kept, known, header, content, threads)
+    except TransferFileError:
+        raise
+    except (zipfile.BadZipFile, EOFError, ValueError, KeyError, TypeError) as error:
+        # ValueError: what np.load says of what it cannot read, and _array of what does not fit
+        raise TransferFileError(f"'{path}' is damaged or no saved transfer ({error}); {remedy}") from error
+
+
+def _header(content: np.ndarray) -> dict[str, Any]:
+    header = json.loads(content.astype(np.uint8).tobytes())
+    if not isinstance(header, dict) or not isinstance(header.get("format"), int):
+        raise ValueError("no header")
+    return header
+
+
+def _sizes(geometry: Geometry) -> list[int]:
+    """What rebuilt geometry must agree in."""
+    return [
+        len(geometry.fracture.faces),
+        len(geometry.element_points),
+        geometry.targets.patches.count,
+        geometry.targets.columns,
+        len(geometry.outlines.vertices),
+    ]
+
+
+def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content, threads: int) -> Transfer:
+    """A transfer from the scene's geometry and the file's arrays, each of which must fit."""
+    times = float(header["times"])
+    globe = Globe(int(header["bands"]))
+    geometry = make_geometry(scene, find_planes(scene), globe, options.max_area, times)
+    if header["sizes"] != _sizes(geometry):
+        raise ValueError("the scene is cut otherwise now")
+    lattice = Nodes.of(geometry.fracture, geometry.lattices)
+    patches, columns, elements = geometry.targets.patches.count, geometry.targets.columns, len(geometry.element_points)
+
+    def array(name: str, dtype, *shape: int | None, below: int | None = None) -> np.ndarray:
+        values = content[name]
+        fits = values.dtype == dtype and values.ndim == len(shape)
+        if not fits or any(n is not None and n != m for n, m in zip(shape, values.shape, strict=True)):
+            raise ValueError(f"'{name}' is of another shape")
+        if below is not None and values.size and not 0 <= values.min() <= values.max() < below:
+            raise ValueError(f"'{name}' points nowhere")
+        if values.dtype.kind == "f" and not np.isfinite(values).all():
+            raise ValueError(f"'{name}' is not finite")
+        return values
+
+    if int(array("lattice_nodes", np.int64)) != len(lattice.points):
+        raise ValueError("the scene is looked at from other places now")
+    points = array("nodes_points", np.float64, None, 3)
+    count = len(points)
+    weights = [
+        Weights(
+            array(f"{name}_start", np.int64, elements + 1, below=np.iinfo(np.int64).max),
+            array(f"{name}_node", np.int64, None, below=count),
+            array(f"{name}_weight", np.float64, None),
+        )
+        for name in _WEIGHTS
+    ]
+    for one in weights:
+        if (np.diff(one.start) < 0).any() or not one.start[-1] == len(one.node) == len(one.weight):
+            raise ValueError("weights do not fit")
+    nodes = Nodes(
+        points,
+        array("nodes_element", np.int64, count, below=elements),
+        geometry.fracture.element_sheet,
+        weights[0],
+        weights[1],
+        lattice.foretold,
+    )
+    specular_rows = array("specular_rows", np.int64, None, below=count)
+    deep_rows = array("deep_rows", np.int64, None, below=count)
+    missing = array("conservation_missing", np.float64, patches)
+    return Transfer(
+        geometry=geometry,
+        form_factors=array("form_factors", np.float32, count, patches),
+        sky_direct=array("sky_direct", np.float32, count, columns),
+        sky_specular=array("sky_specular", np.float32, len(specular_rows), columns),
+        specular_rows=specular_rows,
+        deep_factors=array("deep_factors", np.float32, len(deep_rows), patches),
+        deep_rows=deep_rows,
+        exchange=Exchange(
+            array("exchange_factors", np.float32, patches, patches).astype(float),
+            array("exchange_spread", np.float64, patches),
+            missing,
+        ),
+        unlit=array("unlit", np.float32, count),
+        truncated=array("truncated", np.float32, count),
+        nodes=nodes,
+        lattice=lattice,
+        unsure=array("unsure", np.float64, elements),
+        conservation=Conservation(
+            geometry.areas_kept,
+            array("conservation_lost", np.float64, elements),
+            array("conservation_spread", np.float64, count),
+            missing,
+        ),
+        times=times,
+        limits=ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines)),
+        threads=threads,
+        fingerprint=known,
+        stages=tuple(Stage(**stage) for stage in header["stages"]),
+    )
