@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 SKY_ITEMS = (
-    ("CLEAR", "Clear", "Clear sky with Sun; illuminances by the availability model, from date and Sun altitude"),
-    ("INTERMEDIATE", "Intermediate", "Partly cloudy sky; illuminances by the availability model"),
-    ("OVERCAST", "Overcast", "Overcast sky without Sun; illuminances by the availability model"),
-    ("CIE", "CIE type", "A CIE standard general sky with the illuminances that you give"),
+    ("CLEAR", "Clear", "Clear sky with Sun (CIE type 12)"),
+    ("INTERMEDIATE", "Intermediate", "Partly cloudy sky with a dim Sun (CIE type 10)"),
+    ("OVERCAST", "Overcast", "Overcast sky without Sun (traditional, type 16)"),
+    ("CIE", "CIE type", "One of the CIE standard general skies, by its number"),
     ("NONE", "None", "No sky: the Sun and luminous surfaces only"),
 )
 

@@ -91,7 +91,7 @@ def export_scene(context: bpy.types.Context) -> Export:
     builder = _Builder()
     for part in parts:
         builder.add(part)
-    notices = [*_left_out(objects), *builder.notices()]
+    notices = [*_left_out(objects, context.scene.luzespecular.site), *builder.notices()]
     stop_on_errors(notices)
     return Export(
         builder.scene,
@@ -115,7 +115,7 @@ def _in_edit_mode(objects: list[bpy.types.Object]) -> list[Notice]:
     return [Notice("ERROR", text.format(name=object_.name)) for object_ in objects if object_.mode == "EDIT"]
 
 
-def _left_out(objects: list[bpy.types.Object]) -> list[Notice]:
+def _left_out(objects: list[bpy.types.Object], site: bpy.types.PropertyGroup) -> list[Notice]:
     notices = []
     for object_ in objects:
         if object_.type in participants.SURFACELESS_TYPES:
@@ -124,7 +124,7 @@ def _left_out(objects: list[bpy.types.Object]) -> list[Notice]:
             )
         elif object_.type == "MESH" and not object_.data.polygons and not object_.modifiers:
             text = rpt_("Object '{name}' has no faces and is left out: give it faces, or set its role to Ignore")
-        elif object_.type == "LIGHT":
+        elif object_.type == "LIGHT" and not (site.sun_link != "NONE" and object_ == site.sun_object):
             text = rpt_("Light '{name}' is left out: the Sun comes from site and time, lamps from luminous materials")
         else:
             continue

@@ -1,23 +1,70 @@
-"""What happens by itself: another file lets go of what was prepared for the one before."""
+"""What happens by itself: on another file, another frame, an undo, a turn of the Sun light."""
 
 from __future__ import annotations
 
 import bpy
+from bpy.app.handlers import persistent
 
-from . import session
+from . import following, live, session
 
 
-@bpy.app.handlers.persistent
-def _forget_transfer(_file: str, *_unused: object) -> None:
+@persistent
+def _file_loaded(_file: str, *_unused: object) -> None:
     session.current.forget()
+    live.stop()
+
+
+@persistent
+def _frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    evaluated = scene.evaluated_get(depsgraph)  # in a render, keyframes reach only this copy
+    following.point_sun_light(evaluated.luzespecular.site)
+    live.current.frame(scene, evaluated)
+
+
+@persistent
+def _scene_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    if scene.luzespecular.site.sun_link == "READ" and live.current.follows(scene):
+        light = scene.luzespecular.site.sun_object
+        if any(update.is_updated_transform and update.id.original == light for update in depsgraph.updates):
+            live.request(scene)
+
+
+@persistent
+def _stepped_back(scene: bpy.types.Scene, *_unused: object) -> None:
+    live.request(scene)
+
+
+@persistent
+def _render_begins(_scene: bpy.types.Scene, *_unused: object) -> None:
+    live.current.rendering = True
+
+
+@persistent
+def _render_ends(_scene: bpy.types.Scene, *_unused: object) -> None:
+    live.current.rendering = False
+
+
+_HANDLERS = (
+    ("load_post", _file_loaded),
+    ("frame_change_post", _frame_changed),
+    ("depsgraph_update_post", _scene_updated),
+    ("undo_post", _stepped_back),
+    ("redo_post", _stepped_back),
+    ("render_init", _render_begins),
+    ("render_complete", _render_ends),
+    ("render_cancel", _render_ends),
+)
 
 
 def register() -> None:
-    """Listen to the loading of files."""
-    bpy.app.handlers.load_post.append(_forget_transfer)
+    """Listen."""
+    for event, handler in _HANDLERS:
+        getattr(bpy.app.handlers, event).append(handler)
 
 
 def unregister() -> None:
     """Listen no longer, and let go of the memory."""
-    bpy.app.handlers.load_post.remove(_forget_transfer)
+    for event, handler in _HANDLERS:
+        getattr(bpy.app.handlers, event).remove(handler)
+    live.stop()
     session.current.forget()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import threading
+import time
 
 from .. import core as luz
 from .session import Session
@@ -28,10 +29,17 @@ class Job:
         self._kept = kept
         self._cancelled = threading.Event()
         self._thread = threading.Thread(target=self._run, name="LuzEspecular", daemon=True)
+        self._started = 0.0
 
     def start(self) -> None:
         """Begin."""
+        self._started = time.monotonic()
         self._thread.start()
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since the start."""
+        return time.monotonic() - self._started
 
     def cancel(self) -> None:
         """Ask the solver to stop at its next step."""
@@ -65,3 +73,18 @@ class Job:
             self.result = self.study.run(self._kept, self._tell)
         except Exception as error:  # noqa: BLE001 - handed over to the main thread, which tells the user
             self.error = error
+
+
+def seconds_left(elapsed: float, fraction: float) -> float | None:
+    """Return the seconds that are left if work goes on as it went; None while it is too early to tell.
+
+    Parameters
+    ----------
+    elapsed : float
+        Seconds since the start.
+    fraction : float
+        Share of the work that is done, 0 to 1.
+    """
+    if elapsed < 1.0 or fraction < 0.03:
+        return None
+    return elapsed * (1.0 - fraction) / fraction

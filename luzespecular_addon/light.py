@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import datetime as dt
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import bpy
 from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import core as luz
 from ..core import sun
+from . import sun_light
 from .materials import as_typed
 from .notices import Notice, refuse
 from .translations import solver_message
+
+_CIE_TYPES = {"CLEAR": 12, "INTERMEDIATE": 10, "OVERCAST": 16}
+"""The CIE sky of each preset: that of `luz.default_daylight`."""
 
 
 @dataclass(frozen=True)
@@ -43,14 +47,21 @@ class SunPlace:
 
 
 def sun_place(site: bpy.types.PropertyGroup) -> SunPlace:
-    """Return where the Sun stands for a scene's site, date and hour.
+    """Return where the Sun stands: for a scene's site, date and hour, or where its Sun light shines from.
 
     Raises
     ------
     BadInput
-        Where there is no such date.
+        Where there is no such date, or no Sun light to read.
     """
-    date = date_of(site)
+    date, north = date_of(site), as_typed(site.north_offset)
+    day = date.timetuple().tm_yday
+    if site.sun_link == "READ":
+        light = sun_light.chosen(site)
+        if light is None:
+            raise refuse(rpt_("There is no Sun light to read: choose one in Site & Time, or set Sun Light to Apart"))
+        altitude, azimuth = sun_light.read(light)
+        return SunPlace(altitude, (azimuth - north) % 360.0, azimuth, day)
     midnight = dt.datetime(date.year, date.month, date.day, tzinfo=dt.UTC)
     latitude, longitude, hour = as_typed(site.latitude), as_typed(site.longitude), as_typed(site.hour)
     if site.time_kind == "CLOCK":
@@ -59,13 +70,13 @@ def sun_place(site: bpy.types.PropertyGroup) -> SunPlace:
     else:
         when = midnight + dt.timedelta(hours=hour - longitude / 15.0)
         altitude, azimuth = sun.sun_position_solar(latitude, sun.declination(when), hour)
-    return SunPlace(altitude, azimuth, (azimuth + as_typed(site.north_offset)) % 360.0, date.timetuple().tm_yday)
+    return SunPlace(altitude, azimuth, (azimuth + north) % 360.0, day)
 
 
 def date_of(site: bpy.types.PropertyGroup) -> dt.date:
     """Return the date of the settings; raises `BadInput` where there is none such."""
     try:
-        return dt.date(site.year, site.month, site.day)
+        return dt.date(site.year, site.month, site.day) + dt.timedelta(days=site.days_later)
     except ValueError:
         text = rpt_("There is no day {day} in month {month} of {year}: set another date")
         raise refuse(text.format(day=site.day, month=site.month, year=site.year)) from None
@@ -107,35 +118,45 @@ def daylight(scene: bpy.types.Scene) -> tuple[luz.Daylight, list[Notice]]:
         raise refuse(solver_message(error)) from error
 
 
+def illuminances(sky: bpy.types.PropertyGroup, place: SunPlace) -> tuple[float, float]:
+    """Return what sky settings come to with the Sun at a place.
+
+    Returns
+    -------
+    sky, sun : float
+        By the sky on an open horizontal plane, by the Sun on the plane that faces it [lx]; 0 where there is none.
+    """
+    if sky.illuminance_from == "MODEL":
+        by_sun, by_sky = luz.availability(_condition(sky), place.altitude, place.day_of_year)
+    else:
+        by_sky, by_sun = as_typed(sky.horizontal_illuminance), as_typed(sky.sun_illuminance)
+    shines = sky.use_sun and place.is_up and sky.kind != "OVERCAST"
+    return (0.0 if sky.kind == "NONE" else by_sky), (by_sun if shines else 0.0)
+
+
+def _condition(sky: bpy.types.PropertyGroup) -> str:
+    """Return the condition of the availability model that a sky belongs to (CIE types by the standard's own groups)."""
+    if sky.kind in _CIE_TYPES:
+        return sky.kind.lower()
+    if sky.kind == "NONE":
+        return "clear"
+    number = int(sky.cie_type)
+    return "overcast" if number <= 5 or number == 16 else "intermediate" if number <= 10 else "clear"
+
+
 def _daylight(sky: bpy.types.PropertyGroup, place: SunPlace) -> luz.Daylight:
-    ground = as_typed(sky.ground_reflectance)
-    if sky.kind in {"CLEAR", "INTERMEDIATE", "OVERCAST"}:
-        light = luz.default_daylight(
-            sky.kind.lower(),
-            place.altitude,
-            place.scene_azimuth,
-            day_of_year=place.day_of_year,
-            ground_reflectance=ground,
+    by_sky, by_sun = illuminances(sky, place)
+    given_sky = given_sun = None
+    if by_sky > 0.0:
+        # At night a given sky keeps the pattern that it has with the Sun on the horizon.
+        given_sky = luz.CIESky(
+            _CIE_TYPES.get(sky.kind) or int(sky.cie_type),
+            sun_altitude=max(place.altitude, 0.0),
+            sun_azimuth=place.scene_azimuth,
+            horizontal_illuminance=by_sky,
         )
-        return light if sky.use_sun else replace(light, sun=None)
-    return luz.Daylight(sky=_given_sky(sky, place), sun=_given_sun(sky, place), ground_reflectance=ground)
-
-
-def _given_sky(sky: bpy.types.PropertyGroup, place: SunPlace) -> luz.CIESky | None:
-    illuminance = as_typed(sky.horizontal_illuminance)
-    if sky.kind == "NONE" or illuminance == 0.0:
-        return None
-    # At night a given sky keeps the pattern that it has with the Sun on the horizon.
-    return luz.CIESky(
-        int(sky.cie_type),
-        sun_altitude=max(place.altitude, 0.0),
-        sun_azimuth=place.scene_azimuth,
-        horizontal_illuminance=illuminance,
-    )
-
-
-def _given_sun(sky: bpy.types.PropertyGroup, place: SunPlace) -> luz.Sun | None:
-    illuminance = as_typed(sky.sun_illuminance)
-    if not sky.use_sun or not place.is_up or illuminance == 0.0:
-        return None
-    return luz.Sun(altitude=place.altitude, azimuth=place.scene_azimuth, normal_illuminance=illuminance)
+    if by_sun > 0.0:
+        given_sun = luz.Sun(
+            altitude=place.altitude, azimuth=place.scene_azimuth, normal_illuminance=by_sun, disc=sky.sun_disc
+        )
+    return luz.Daylight(sky=given_sky, sun=given_sun, ground_reflectance=as_typed(sky.ground_reflectance))

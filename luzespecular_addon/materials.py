@@ -19,6 +19,7 @@ from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import core as luz
 from ..core.materials import normal_interface_reflectance
+from . import library
 from .colours import relative_luminance
 from .notices import Notice
 from .translations import solver_message
@@ -101,6 +102,23 @@ def _custom(settings: bpy.types.PropertyGroup) -> Optics:
     return Optics(
         as_typed(settings.diffuse_reflectance), as_typed(settings.specular_reflectance), transmittance, exitance
     )
+
+
+def write(settings: bpy.types.PropertyGroup, optics: Optics) -> None:
+    """Give a material's settings the values as its own."""
+    settings.source = "CUSTOM"
+    settings.diffuse_reflectance = optics.diffuse_reflectance
+    settings.specular_reflectance = optics.specular_reflectance
+    settings.regular_transmittance = optics.regular_transmittance
+    settings.exitance = optics.exitance
+    settings.use_refractive_index = optics.refractive_index is not None
+    if optics.refractive_index is not None:
+        settings.refractive_index = optics.refractive_index
+
+
+def of_entry(entry: library.Entry) -> Optics:
+    """Return the values of a material of the library."""
+    return Optics(entry.diffuse, entry.specular, entry.transmittance, refractive_index=entry.index)
 
 
 def from_shader(material: bpy.types.Material) -> Optics:

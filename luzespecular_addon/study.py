@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, replace
 
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
@@ -41,8 +41,12 @@ class Study:
     daylight : luz.Daylight
     options : dict
         Keyword arguments of `luz.prepare`.
+    solving : dict
+        Keyword arguments of `luz.Transfer.solve`.
     title : str
         Date, hour and sky, for people.
+    scene_name, layer_name : str
+        Scene and view layer that the run is about.
     notices : tuple of Notice
         Warnings and notes so far.
     """
@@ -50,19 +54,26 @@ class Study:
     export: export.Export
     daylight: luz.Daylight
     options: dict
+    solving: dict
     title: str
+    scene_name: str
+    layer_name: str
     notices: tuple[Notice, ...]
+
+    @property
+    def key(self) -> Hashable:
+        """What a prepared transfer has to agree in, to serve for this study."""
+        return self.export.fingerprint, tuple(sorted(self.options.items()))
 
     def run(self, kept: session.Session, progress: Progress) -> luz.Result:
         """Solve, with the kept transfer if it fits; raises `luz.Cancelled` when `progress` says so."""
-        key = (self.export.fingerprint, tuple(sorted(self.options.items())))
-        transfer = kept.get(key)
+        transfer = kept.get(self.key)
         share = 0.0
         if transfer is None:
             share = _SHARE_OF_PREPARATION
             transfer = luz.prepare(self.export.scene, progress=_part(progress, 0.0, share), **self.options)
-            kept.keep(key, transfer)
-        return transfer.solve(self.daylight, progress=_part(progress, share, 1.0))
+            kept.keep(self.key, transfer)
+        return transfer.solve(self.daylight, progress=_part(progress, share, 1.0), **self.solving)
 
 
 def collect(context: bpy.types.Context, exported: export.Export | None = None) -> Study:
@@ -79,23 +90,43 @@ def collect(context: bpy.types.Context, exported: export.Export | None = None) -
     BadInput
         Where something stands in the way, with all problems named.
     """
-    scene = context.scene
+    scene, accuracy = context.scene, context.scene.luzespecular.accuracy
     daylight, remarks = light.daylight(scene)
     stop_on_errors(writeback.refusals(scene.objects))
     exported = exported or export.export_scene(context)
+    _refuse_darkness(scene, daylight, exported)
+    return Study(
+        exported,
+        daylight,
+        _preparing(accuracy, exported.area),
+        _solving(accuracy),
+        title(scene),
+        scene.name,
+        context.view_layer.name,
+        (*remarks, *exported.notices),
+    )
+
+
+def relit(study: Study, scene: bpy.types.Scene) -> Study:
+    """Return a study with the light that a scene's settings describe now, geometry and all else as it was.
+
+    Raises
+    ------
+    BadInput
+        Where the settings describe no light that can be computed.
+    """
+    daylight, remarks = light.daylight(scene)
+    _refuse_darkness(scene, daylight, study.export)
+    return replace(study, daylight=daylight, title=title(scene), notices=(*remarks, *study.export.notices))
+
+
+def _refuse_darkness(scene: bpy.types.Scene, daylight: luz.Daylight, exported: export.Export) -> None:
     if daylight.sky is None and daylight.sun is None and not exported.luminous:
         text = rpt_(
             "There is no light at {hour}: the Sun is down or off, there is no sky, no surface is luminous. "
             "Set hour or sky"
         )
         raise refuse(text.format(hour=clock(scene.luzespecular.site.hour)))
-    return Study(
-        exported,
-        daylight,
-        _options(scene.luzespecular.accuracy, exported.area),
-        title(scene),
-        (*remarks, *exported.notices),
-    )
 
 
 def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> tuple[Notice, ...]:
@@ -111,17 +142,34 @@ def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> tupl
     BadInput
         Where the scene changed meanwhile; nothing is written then.
     """
-    scene = context.scene
-    if export.current_fingerprint(context) != study.export.fingerprint:
+    scene = bpy.data.scenes.get(study.scene_name)
+    if scene is None or not is_current(context, study):
         raise refuse(rpt_("The scene changed while it was solved, so the results were thrown away: solve again"))
+    notices = show(scene, study, result)
+    display.show(scene)
+    return notices
+
+
+def show(scene: bpy.types.Scene, study: Study, result: luz.Result) -> tuple[Notice, ...]:
+    """Write results to meshes and tables and colour them, whatever the viewports show; see `finish`."""
     own = writeback.own_results(study.export, result)
     results_object.create(scene, study.export, result)
     for results in own:
         writeback.write(results)
     notices = (*study.notices, *_remarks_of_solver(study, result))
     _fill_table(scene, study, result, notices)
-    display.show(scene)
+    display.recolour(scene)
     return notices
+
+
+def is_current(context: bpy.types.Context, study: Study) -> bool:
+    """Whether the scene that a study is about still stands as it did when it was collected."""
+    scene = bpy.data.scenes.get(study.scene_name)
+    layer = scene and scene.view_layers.get(study.layer_name)
+    if layer is None:
+        return False
+    with context.temp_override(scene=scene, view_layer=layer):
+        return export.current_fingerprint(bpy.context) == study.export.fingerprint
 
 
 def _remarks_of_solver(study: Study, result: luz.Result) -> list[Notice]:
@@ -146,12 +194,30 @@ def title(scene: bpy.types.Scene) -> str:
     return f"{light.date_of(site).isoformat()}, {clock(site.hour)} {time}, {iface_(kind, CONTEXT)}"
 
 
-def _options(accuracy: bpy.types.PropertyGroup, area: float) -> dict:
+def _preparing(accuracy: bpy.types.PropertyGroup, area: float) -> dict:
+    """Return the keyword arguments of `luz.prepare`; ``area`` of all that scatters light [m²]."""
     fineness = accuracy.fineness
     if fineness == "EXPERT":
-        return {"bands": accuracy.bands, "max_area": as_typed(accuracy.max_area) or None}
+        return {
+            "bands": accuracy.bands,
+            "max_area": as_typed(accuracy.max_area) or None,
+            "specular_cutoff": as_typed(accuracy.specular_cutoff),
+            "threads": accuracy.threads or None,
+        }
+    if fineness == "ERROR":
+        return {"accuracy": as_typed(accuracy.error) / 100.0}
     max_area = area / _FACES[fineness] if fineness in _FACES and area > 0.0 else None
     return {"bands": _BANDS[fineness], "max_area": max_area}
+
+
+def _solving(accuracy: bpy.types.PropertyGroup) -> dict:
+    """Return the keyword arguments of `luz.Transfer.solve`."""
+    if accuracy.fineness != "EXPERT":
+        return {}
+    return {
+        "tolerance": as_typed(accuracy.tolerance),
+        "cycles": None if accuracy.cycles < 0 else accuracy.cycles,
+    }
 
 
 def _fill_table(scene: bpy.types.Scene, study: Study, result: luz.Result, notices: tuple[Notice, ...]) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import bpy
 
-from . import materials, results, solve
+from . import materials, presets, results, site, solve, surfaces
 
-_ROOMS = (solve, results, materials)
+_ROOMS = (solve, site, surfaces, results, materials, presets)
 
 register, unregister = bpy.utils.register_classes_factory([cls for room in _ROOMS for cls in room.CLASSES])

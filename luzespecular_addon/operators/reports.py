@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ..notices import Notice
 
@@ -21,3 +22,10 @@ def redraw(context: bpy.types.Context) -> None:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
+
+
+def time_left(seconds: float) -> str:
+    """Return for people how long something will still take, no more precise than it is known."""
+    if seconds < 60.0:
+        return iface_("about {seconds:.0f} s left").format(seconds=max(seconds, 1.0))
+    return iface_("about {minutes:.0f} min left").format(minutes=seconds / 60.0)

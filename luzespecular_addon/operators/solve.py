@@ -9,11 +9,11 @@ from bpy.app.translations import pgettext_iface as iface_
 from bpy.app.translations import pgettext_rpt as rpt_
 
 from ... import core as luz
-from .. import session, study
-from ..job import Job
+from .. import live, session, study
+from ..job import Job, seconds_left
 from ..notices import BadInput
 from ..translations import solver_message
-from .reports import redraw, report_all
+from .reports import redraw, report_all, time_left
 
 _TICK = 0.05  # seconds between looks at the solver
 
@@ -49,7 +49,8 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
             return {"CANCELLED"}
         self._job = Job(planned, session.current)
         state = context.window_manager.luzespecular
-        state.running, state.cancel, state.fraction, state.stage = True, False, 0.0, ""
+        state.running, state.cancel, state.fraction, state.stage, state.seconds_left = True, False, 0.0, "", -1.0
+        state.live_remark = ""
         self._timer = context.window_manager.event_timer_add(_TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
         self._job.start()
@@ -88,6 +89,7 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         self._tidy(context)
 
     def _collect(self, context) -> study.Study | None:
+        live.current.stop()
         try:
             return study.collect(context)
         except BadInput as error:
@@ -108,6 +110,8 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         except BadInput as error:
             report_all(self, error.notices)
             return {"CANCELLED"}
+        live.current.arm(job.study)
+        live.request(bpy.data.scenes[job.study.scene_name])  # the settings may have moved on meanwhile
         report_all(self, notices)
         count = len(job.result.illuminance)
         self.report({"INFO"}, rpt_("Solved: {title}; {count} faces").format(title=job.study.title, count=count))
@@ -119,8 +123,13 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         if latest is None:
             return
         state.fraction, state.stage = latest
+        left = seconds_left(self._job.elapsed, state.fraction)
+        state.seconds_left = -1.0 if left is None else left
         text = iface_("LuzEspecular: {percent:.0f} % {stage} (Esc cancels)")
-        context.workspace.status_text_set(text.format(percent=100.0 * state.fraction, stage=iface_(state.stage)))
+        text = text.format(percent=100.0 * state.fraction, stage=iface_(state.stage))
+        if left is not None:
+            text = f"{text}  {time_left(left)}"
+        context.workspace.status_text_set(text)
         redraw(context)
 
     def _tidy(self, context) -> None:
@@ -140,7 +149,10 @@ class LUZESPECULAR_OT_cancel(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         """Only while something runs."""
-        return context.window_manager.luzespecular.running
+        if context.window_manager.luzespecular.running:
+            return True
+        cls.poll_message_set("No calculation is running")
+        return False
 
     def execute(self, context):
         """Leave word for the running operator."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import bpy
 
-from . import material, results, site, sky, solve, surfaces
+from . import accuracy, material, presets, results, site, sky, solve, surfaces
 
-_ROOMS = (solve, site, sky, surfaces, results, material)
+_ROOMS = (presets, site, sky, surfaces, accuracy, solve, results, material)  # from top to bottom
 
 register, unregister = bpy.utils.register_classes_factory([cls for room in _ROOMS for cls in room.CLASSES])

@@ -7,6 +7,7 @@ from bpy.app.translations import pgettext_iface as iface_
 
 from .. import materials
 from .drawing import draw_notices
+from .presets import LUZESPECULAR_PT_material_presets
 
 
 class LUZESPECULAR_PT_material(bpy.types.Panel):
@@ -24,13 +25,18 @@ class LUZESPECULAR_PT_material(bpy.types.Panel):
         """Only with a material."""
         return context.material is not None
 
+    def draw_header_preset(self, _context):
+        """Draw the button of presets."""
+        LUZESPECULAR_PT_material_presets.draw_panel_header(self.layout)
+
     def draw(self, context):
         """Draw the panel."""
         layout = self.layout
         material = context.material
         settings = material.luzespecular
         layout.row().prop(settings, "source", expand=True)
-        column = layout.column(align=True)
+        column = layout.column()
+        column.use_property_split = True
         optics = materials.read(material)
         if settings.source == "CUSTOM":
             column.prop(settings, "use_refractive_index")
@@ -42,11 +48,24 @@ class LUZESPECULAR_PT_material(bpy.types.Panel):
                 column.prop(settings, "specular_reflectance")
                 column.prop(settings, "regular_transmittance")
             column.prop(settings, "exitance")
+            column.prop(settings, "reference")
         else:
-            _draw_optics(column.column(align=True), optics)
+            _draw_optics(column.box().column(align=True), optics)
+        _draw_sum(layout, optics)
         draw_notices(layout, materials.notices(material, optics), context.region.width)
-        layout.label(text=iface_("Not absorbed: {share:.3f} of 1").format(share=optics.total), translate=False)
-        layout.operator("luzespecular.values_from_shader", icon="COPYDOWN")
+        row = layout.row(align=True)
+        row.menu("LUZESPECULAR_MT_library", icon="ASSET_MANAGER")
+        row.operator("luzespecular.values_from_shader", icon="COPYDOWN")
+
+
+def _draw_sum(layout: bpy.types.UILayout, optics: materials.Optics) -> None:
+    """Show what is not absorbed, which cannot be more than all; a pane's mirror reflection follows by itself."""
+    allowed = optics.total <= 1.0
+    terms = "τ" if optics.refractive_index is not None else "ρd + ρs + τ"
+    row = layout.row(align=True)
+    row.alert = not allowed
+    row.progress(factor=min(optics.total, 1.0), text=f"{terms} = {optics.total:.3f} {'≤' if allowed else '>'} 1")
+    row.label(text="", icon="CHECKMARK" if allowed else "ERROR")
 
 
 def _draw_optics(column: bpy.types.UILayout, optics: materials.Optics) -> None:

@@ -1,17 +1,19 @@
-"""Solve, progress and cancel."""
+"""Solve, progress and cancel; live results."""
 
 from __future__ import annotations
 
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
-from .drawing import Sidebar
+from .. import display, live
+from ..operators.reports import time_left
+from .drawing import Sidebar, draw_wrapped
 
 
 class LUZESPECULAR_PT_solve(Sidebar, bpy.types.Panel):
     """Solve, progress and cancel."""
 
-    bl_label = "LuzEspecular"
+    bl_label = "Solve"
     bl_description = "Solve, progress and cancel"
     bl_idname = "LUZESPECULAR_PT_solve"
 
@@ -20,20 +22,33 @@ class LUZESPECULAR_PT_solve(Sidebar, bpy.types.Panel):
         layout = self.layout
         state = context.window_manager.luzespecular
         if state.running:
-            row = layout.row(align=True)
-            row.progress(factor=state.fraction, text=f"{100.0 * state.fraction:.0f} %  {iface_(state.stage)}")
-            row.operator("luzespecular.cancel", text="", icon="CANCEL")
+            _draw_progress(layout, state)
         else:
             row = layout.row()
             row.scale_y = 1.4
             row.operator("luzespecular.solve", icon="LIGHT_SUN")
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        accuracy = context.scene.luzespecular.accuracy
-        layout.prop(accuracy, "fineness")
-        if accuracy.fineness == "EXPERT":
-            layout.prop(accuracy, "bands")
-            layout.prop(accuracy, "max_area")
+        scene = context.scene
+        layout.prop(scene.luzespecular, "live")
+        if scene.luzespecular.live and display.has_results(scene):
+            if state.live_remark:
+                draw_wrapped(layout.column(align=True), state.live_remark, "ERROR", context.region.width)
+            elif not live.current.follows(scene) and not state.running:
+                draw_wrapped(
+                    layout.column(align=True),
+                    iface_("Solve once more to have results follow hour, date and sky"),
+                    "INFO",
+                    context.region.width,
+                )
+        if scene.animation_data is not None and scene.animation_data.action is not None:
+            layout.prop(scene.render, "use_lock_interface")
+
+
+def _draw_progress(layout: bpy.types.UILayout, state: bpy.types.PropertyGroup) -> None:
+    row = layout.row(align=True)
+    row.progress(factor=state.fraction, text=f"{100.0 * state.fraction:.0f} %  {iface_(state.stage)}")
+    row.operator("luzespecular.cancel", text="", icon="CANCEL")
+    text = iface_("Esc cancels") if state.seconds_left < 0.0 else time_left(state.seconds_left)
+    layout.label(text=text, icon="TIME", translate=False)
 
 
 CLASSES = (LUZESPECULAR_PT_solve,)

@@ -6,14 +6,20 @@ No postponed annotations here: Blender reads the annotations of property groups 
 import bpy
 from bpy.props import PointerProperty
 
+from .. import live
 from . import accuracy, materials, progress, results, site, sky, surfaces
 from .accuracy import LuzAccuracySettings
+from .kinds import BoolProperty
 from .materials import LuzMaterialSettings
 from .progress import LuzProgress
 from .results import LuzDisplaySettings, LuzResults
 from .site import LuzSiteSettings
 from .sky import LuzSkySettings
 from .surfaces import LuzMeshSettings, LuzObjectSettings
+
+
+def _live_changed(settings: "LuzSceneSettings", _context: bpy.types.Context) -> None:
+    live.request(settings.id_data)
 
 
 class LuzSceneSettings(bpy.types.PropertyGroup):
@@ -24,6 +30,13 @@ class LuzSceneSettings(bpy.types.PropertyGroup):
     accuracy: PointerProperty(type=LuzAccuracySettings)
     display: PointerProperty(type=LuzDisplaySettings)
     results: PointerProperty(type=LuzResults)
+    live: BoolProperty(
+        name="Live",
+        description="Once solved, show another hour, date or sky at once, as one drags or plays; solve again when "
+        "anything else changes",
+        default=True,
+        update=_live_changed,
+    )
 
 
 _ROOMS = (materials, surfaces, site, sky, accuracy, results, progress)

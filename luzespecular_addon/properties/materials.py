@@ -2,7 +2,7 @@
 
 import bpy
 
-from .kinds import BoolProperty, EnumProperty, FloatProperty, ShareProperty
+from .kinds import BoolProperty, EnumProperty, FloatProperty, ShareProperty, StringProperty
 
 
 class LuzMaterialSettings(bpy.types.PropertyGroup):
@@ -50,6 +50,10 @@ class LuzMaterialSettings(bpy.types.PropertyGroup):
         description="Luminous exitance that the surface emits by itself",
         min=0.0,
         default=0.0,
+    )
+    reference: StringProperty(
+        name="Reference",
+        description="Where the values come from: a measurement, a data sheet, a library",
     )
 
 

@@ -11,6 +11,8 @@ class LuzProgress(bpy.types.PropertyGroup):
     running: BoolProperty(options={"SKIP_SAVE"})
     fraction: FloatProperty(min=0.0, max=1.0, options={"SKIP_SAVE"})
     stage: StringProperty(options={"SKIP_SAVE"})
+    seconds_left: FloatProperty(min=-1.0, default=-1.0, options={"SKIP_SAVE"})
+    live_remark: StringProperty(options={"SKIP_SAVE"})
     cancel: BoolProperty(options={"SKIP_SAVE"})
 
 

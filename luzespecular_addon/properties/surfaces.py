@@ -4,6 +4,12 @@ import bpy
 
 from .kinds import BoolProperty, EnumProperty, StringProperty
 
+ROLE_ITEMS = (
+    ("RECEIVER", "Receiver", "Blocks and reflects light, and gets results"),
+    ("OBSTRUCTION", "Obstruction", "Blocks and reflects light, but gets no results"),
+    ("IGNORE", "Ignore", "Takes no part"),
+)
+
 
 class LuzObjectSettings(bpy.types.PropertyGroup):
     """The part an object plays."""
@@ -11,11 +17,7 @@ class LuzObjectSettings(bpy.types.PropertyGroup):
     role: EnumProperty(
         name="Role",
         description="The part this object plays in the daylight calculation",
-        items=(
-            ("RECEIVER", "Receiver", "Blocks and reflects light, and gets results"),
-            ("OBSTRUCTION", "Obstruction", "Blocks and reflects light, but gets no results"),
-            ("IGNORE", "Ignore", "Takes no part"),
-        ),
+        items=ROLE_ITEMS,
         default="RECEIVER",
     )
     sides: EnumProperty(

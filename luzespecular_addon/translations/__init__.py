@@ -12,13 +12,15 @@ from .pt_br import OPERATORS, SOLVER, STAGES, TEXTS
 CONTEXT = "LuzEspecular"
 """Context of the names of properties and of the items to choose from."""
 
+_CONTEXTS = ("*", CONTEXT, "Operator")  # the last is asked where a button has a text of its own
+
 _BASE = __package__.rsplit(".", 2)[0]
 
 
 def table() -> dict[str, dict[tuple[str, str], str]]:
     """Return the translations as Blender registers them."""
     everywhere = TEXTS | STAGES | SOLVER
-    texts = {(context, english): text for context in ("*", CONTEXT) for english, text in everywhere.items()}
+    texts = {(context, english): text for context in _CONTEXTS for english, text in everywhere.items()}
     texts |= {("Operator", english): text for english, text in OPERATORS.items()}
     return {"pt_BR": texts}
 

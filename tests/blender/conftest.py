@@ -19,11 +19,14 @@ ROOMS = (
     "export",
     "job",
     "legend",
+    "library",
     "light",
+    "live",
     "materials",
     "mesh_arrays",
     "notices",
     "operators",
+    "places",
     "results_object",
     "session",
     "study",
@@ -93,7 +96,9 @@ def bpy(blender):
 def addon(bpy):
     """The extension's rooms by name, and the solver as `luz`."""
     rooms = {name: importlib.import_module(f"{PACKAGE}.luzespecular_addon.{name}") for name in ROOMS}
-    return SimpleNamespace(luz=importlib.import_module(f"{PACKAGE}.core"), **rooms)
+    return SimpleNamespace(
+        PACKAGE=f"{PACKAGE}.luzespecular_addon", luz=importlib.import_module(f"{PACKAGE}.core"), **rooms
+    )
 
 
 @pytest.fixture

@@ -120,3 +120,39 @@ def test_sunrise_and_sunset_in_both_kinds_of_time(addon, settings):
     assert clock_rise - rise == pytest.approx(2 / 60, abs=0.01)  # the equation of time
     settings.site.latitude = 80.0
     assert addon.light.sunrise_sunset(settings.site) == (None, None)
+
+
+def test_presets_take_given_illuminances_too(addon, bpy, settings):
+    settings.sky.kind, settings.sky.illuminance_from = "INTERMEDIATE", "VALUE"
+    settings.sky.horizontal_illuminance, settings.sky.sun_illuminance = 20_000.0, 15_000.0
+    light, _ = addon.light.daylight(bpy.context.scene)
+    assert light.sky.kind == 10
+    assert light.sky.horizontal_illuminance == 20_000.0
+    assert light.sun.normal_illuminance == 15_000.0
+    settings.sky.kind = "CLEAR"  # a preset brings its own illuminances along
+    assert settings.sky.illuminance_from == "MODEL"
+
+
+@pytest.mark.parametrize(("number", "condition"), [(1, "cloudy"), (5, "cloudy"), (8, "intermediate"), (13, "clear")])
+def test_cie_types_by_the_model_of_their_group(addon, bpy, settings, number, condition):
+    settings.sky.kind, settings.sky.cie_type, settings.sky.illuminance_from = "CIE", str(number), "MODEL"
+    light, _ = addon.light.daylight(bpy.context.scene)
+    place = addon.light.sun_place(settings.site)
+    direct, diffuse = addon.luz.availability(condition, place.altitude, place.day_of_year)
+    assert light.sky.horizontal_illuminance == pytest.approx(diffuse)
+    assert (0.0 if light.sun is None else light.sun.normal_illuminance) == pytest.approx(direct)
+
+
+def test_what_the_panel_shows_is_what_is_used(addon, bpy, settings):
+    for kind in ("CLEAR", "INTERMEDIATE", "OVERCAST", "CIE", "NONE"):
+        settings.sky.kind = kind
+        shown = addon.light.illuminances(settings.sky, addon.light.sun_place(settings.site))
+        light, _ = addon.light.daylight(bpy.context.scene)
+        assert shown == pytest.approx(
+            (light.sky_illuminance, 0.0 if light.sun is None else light.sun.normal_illuminance), rel=1e-6
+        )
+
+
+def test_the_solar_disc_is_handed_on(addon, bpy, settings):
+    settings.sky.sun_disc = True
+    assert addon.light.daylight(bpy.context.scene)[0].sun.disc

@@ -174,3 +174,46 @@ def test_shader_values_can_be_copied(addon, bpy, shader, index):
     assert after.refractive_index == before.refractive_index
     assert after.regular_transmittance == pytest.approx(before.regular_transmittance, rel=1e-6)
     after.material()
+
+
+def test_library_is_possible_and_has_sources(addon):
+    library = addon.library
+    assert len({entry.key for entry in library.LIBRARY}) == len(library.LIBRARY) > 30
+    for entry in library.LIBRARY:
+        assert entry.source in library.SOURCES, entry
+        assert entry.stated, entry
+        material = addon.materials.of_entry(entry).material()  # raises where it cannot be
+        assert 0 < material.diffuse_reflectance + material.specular_reflectance + material.regular_transmittance <= 1
+    assert sum(len(entries) for entries in library.groups().values()) == len(library.LIBRARY)
+
+
+def test_values_are_within_what_the_source_states(addon):
+    for entry in addon.library.LIBRARY:
+        low, high = _range(entry.stated)
+        assert low <= entry.diffuse + entry.specular + entry.transmittance <= high, entry
+
+
+def _range(stated):
+    ends = [float(part) for part in stated.removesuffix("%").split("–")]
+    return [end / 100 if "%" in stated else end for end in (ends[0], ends[-1])]
+
+
+def test_library_fills_the_active_material(addon, bpy, make):
+    paint = bpy.data.materials.new("Tinta")
+    square = make.square(material=paint)
+    bpy.context.view_layer.objects.active = square
+    assert bpy.ops.luzespecular.apply_material(material="MIRROR") == {"FINISHED"}
+    optics = addon.materials.read(paint)
+    assert (optics.diffuse_reflectance, optics.specular_reflectance) == (0.0, pytest.approx(0.84))
+    assert "GharPedia" in paint.luzespecular.reference
+    bpy.ops.luzespecular.apply_material(material="GLASS_4")
+    optics = addon.materials.read(paint)
+    assert (optics.regular_transmittance, optics.refractive_index) == pytest.approx((0.89, 1.52))
+    with pytest.raises(RuntimeError, match="no material 'GOLD'"):
+        bpy.ops.luzespecular.apply_material(material="GOLD")
+
+
+def test_buttons_need_a_material(bpy, make):
+    bpy.context.view_layer.objects.active = make.square()
+    with pytest.raises(RuntimeError, match="add one to the object"):
+        bpy.ops.luzespecular.apply_material(material="MIRROR")

@@ -45,6 +45,13 @@ def _enum_items(tree):
                 yield from (_literal(element) for element in node.elts[1:])
 
 
+def _library_names(tree):
+    """Names and groups of the library's materials."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and _called(node) == "Entry":
+            yield from (_literal(argument) for argument in node.args[1:3])
+
+
 def _is_digit(node):
     return isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value.isdigit()
 
@@ -73,6 +80,8 @@ def interface_texts():
                         texts.add(("*", _literal(statement.value)))
                     if "bl_label" in targets:
                         texts.add(("Operator" if operator else "*", _literal(statement.value)))
+        if path.name == "library.py":
+            texts.update(("*", text) for text in _library_names(tree))
         if path.name == "choices.py" or path.parent.name == "properties":
             texts.update(("*", text) for text in _enum_items(tree))
     return texts

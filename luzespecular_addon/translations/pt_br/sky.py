@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
+OPERATORS = {
+    "Add Sky Preset": "Adicionar predefinição de céu",
+}
+
 TEXTS = {
     "Sky": "Céu",
     "Sky, Sun and ground": "Céu, Sol e solo",
     "Sky and its illuminance": "Céu e sua iluminância",
     "Clear": "Claro",
-    "Clear sky with Sun; illuminances by the availability model, from date and Sun altitude": (
-        "Céu claro com Sol; iluminâncias pelo modelo de disponibilidade, a partir da data e da altura do Sol"
-    ),
     "Intermediate": "Parcialmente nublado",
-    "Partly cloudy sky; illuminances by the availability model": (
-        "Céu parcialmente nublado; iluminâncias pelo modelo de disponibilidade"
-    ),
     "Overcast": "Encoberto",
-    "Overcast sky without Sun; illuminances by the availability model": (
-        "Céu encoberto sem Sol; iluminâncias pelo modelo de disponibilidade"
-    ),
     "CIE type": "Tipo CIE",
-    "A CIE standard general sky with the illuminances that you give": (
-        "Um céu padrão geral da CIE com as iluminâncias que você informar"
-    ),
     "None": "Nenhum",
     "No sky: the Sun and luminous surfaces only": "Sem céu: apenas o Sol e as superfícies luminosas",
     "CIE Type": "Tipo CIE",
@@ -74,4 +66,24 @@ TEXTS = {
     "Reflectance of the open ground around the scene: 0.2 for grass or soil, 0 for no light from below": (
         "Refletância do solo aberto ao redor da cena: 0,2 para grama ou terra, 0 para nenhuma luz de baixo"
     ),
+    "Clear sky with Sun (CIE type 12)": "Céu claro com Sol (tipo CIE 12)",
+    "Partly cloudy sky with a dim Sun (CIE type 10)": "Céu parcialmente nublado com Sol fraco (tipo CIE 10)",
+    "Overcast sky without Sun (traditional, type 16)": "Céu encoberto sem Sol (tradicional, tipo 16)",
+    "One of the CIE standard general skies, by its number": "Um dos céus padrão gerais da CIE, por seu número",
+    "Where the illuminances of sky and Sun come from": "De onde vêm as iluminâncias do céu e do Sol",
+    "By Model": "Por modelo",
+    "Mean illuminances by date and Sun altitude (IES daylight availability, RP-21)": (
+        "Iluminâncias médias pela data e pela altura do Sol (disponibilidade de luz natural da IES, RP-21)"
+    ),
+    "By Value": "Por valor",
+    "The illuminances given here": "As iluminâncias informadas aqui",
+    "Solar Disc": "Disco solar",
+    "Soft edges of shadows by the disc of 0.533° that the Sun is; takes longer": (
+        "Bordas suaves das sombras pelo disco de 0,533° que o Sol é; demora mais"
+    ),
+    "Sky: {lux:,.0f} lx": "Céu: {lux:,.0f} lx",
+    "Sun: {lux:,.0f} lx facing it": "Sol: {lux:,.0f} lx de frente",
+    "Skies": "Céus",
+    "Skies saved by the user": "Céus salvos pelo usuário",
+    "Save or remove a preset: sky, Sun and ground": "Salvar ou remover uma predefinição: céu, Sol e solo",
 }

@@ -20,4 +20,19 @@ TEXTS = {
     "Cancelled; nothing was changed": "Cancelado; nada foi alterado",
     "Solved: {title}; {count} faces": "Calculado: {title}; {count} faces",
     "LuzEspecular: {percent:.0f} % {stage} (Esc cancels)": "LuzEspecular: {percent:.0f} % {stage} (Esc cancela)",
+    "Solve": "Calcular",
+    "Live": "Ao vivo",
+    "Once solved, show another hour, date or sky at once, as one drags or plays; solve again when anything else "
+    "changes": (
+        "Depois do cálculo, mostrar logo outra hora, data ou céu, ao arrastar ou reproduzir; se algo mais mudar, "
+        "calcule de novo"
+    ),
+    "Solve once more to have results follow hour, date and sky": (
+        "Calcule mais uma vez para que os resultados sigam hora, data e céu"
+    ),
+    "The scene changed since it was solved: solve again": "A cena mudou desde o cálculo: calcule de novo",
+    "No calculation is running": "Nenhum cálculo em andamento",
+    "Esc cancels": "Esc cancela",
+    "about {seconds:.0f} s left": "faltam cerca de {seconds:.0f} s",
+    "about {minutes:.0f} min left": "faltam cerca de {minutes:.0f} min",
 }

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+OPERATORS = {
+    "Set Role": "Definir papel",
+    "Select by Role": "Selecionar por papel",
+}
+
 TEXTS = {
     "Surfaces": "Superfícies",
     "The part the active object plays": "O papel do objeto ativo",
@@ -28,4 +33,14 @@ TEXTS = {
     ),
     "Both": "Ambos",
     "Both sides, each by itself": "Os dois lados, cada um por si",
+    "Give to Selected": "Dar aos selecionados",
+    "Give all selected objects the role of the active one, and its lit sides": (
+        "Dar a todos os objetos selecionados o papel do ativo, e seus lados iluminados"
+    ),
+    "Select several objects; the active one's role is given to the others": (
+        "Selecione vários objetos; o papel do ativo é dado aos outros"
+    ),
+    "Role given to {count} objects": "Papel dado a {count} objetos",
+    "Select all visible objects that play this part": "Selecionar todos os objetos visíveis com este papel",
+    "The part the objects play": "O papel dos objetos",
 }

@@ -1,0 +1,217 @@
+"""Live results: with the transfer ready, another hour, date or sky is solved and shown while one drags.
+
+Requests come in faster than they can be answered: the newest counts, one at a time is solved in a thread of its own,
+and Blender's timer writes what is done. While one drags, reflections stop early; once the settings rest they are
+followed to the end. Frames that are rendered are always solved to the end before they are drawn.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from dataclasses import replace
+
+import bpy
+from bpy.app.translations import pgettext_iface as iface_
+
+from .. import core as luz
+from . import display, session, study
+from .job import Job
+from .notices import BadInput
+from .translations import solver_message
+
+_log = logging.getLogger(__name__)
+
+_TICK = 0.01  # seconds between looks at a job on its way
+_REST = 0.4  # seconds without a change after which a quick result is settled
+_AT_ONCE = 0.15  # a solution that took no longer may hold up playback
+_CHEAP = 0.01  # a look at the scene that took no longer is taken again before results are shown
+_QUICK_TOLERANCE = 0.02
+
+
+class Live:
+    """Follows the light of one solved scene; used by the main thread, in a render by the render's.
+
+    Attributes
+    ----------
+    rendering : bool
+        Whether frames are being rendered.
+    """
+
+    def __init__(self):
+        self.rendering = False
+        self._study: study.Study | None = None
+        self._job: Job | None = None
+        self._quick = False
+        self._wanted = False
+        self._changed_at = 0.0
+        self._verified_at = 0.0
+        self._seconds = 0.0
+        self._verifying = 0.0
+
+    def arm(self, planned: study.Study) -> None:
+        """Begin to follow: a study that was just solved and shown."""
+        self.stop()
+        self._study, self._quick, self._verified_at = planned, False, time.monotonic()
+
+    def disarm(self) -> None:
+        """Follow no longer."""
+        self.stop()
+        self._study = None
+
+    def stop(self) -> None:
+        """Leave off what is on its way."""
+        self._wanted = False
+        if self._job is not None:
+            self._job.cancel()
+            self._job = None
+
+    def follows(self, scene: bpy.types.Scene) -> bool:
+        """Whether a scene's results are live."""
+        return (
+            self._study is not None
+            and scene.name == self._study.scene_name
+            and scene.luzespecular.live
+            and session.current.get(self._study.key) is not None
+            and display.has_results(scene)
+        )
+
+    @property
+    def scene(self) -> bpy.types.Scene | None:
+        """The scene that is followed."""
+        return None if self._study is None else bpy.data.scenes.get(self._study.scene_name)
+
+    def want(self) -> None:
+        """Note that the settings changed."""
+        self._wanted, self._changed_at = True, time.monotonic()
+
+    def advance(self) -> bool:
+        """Do the next thing that is to be done; tell whether there is more to come."""
+        scene = self.scene
+        if scene is None or not self.follows(scene):
+            self.stop()
+            return False
+        if self._job is not None:
+            if not self._job.finished:
+                return True
+            self._conclude(scene)
+            if self._study is None:
+                return False
+        try:
+            return self._begin(scene)
+        except BadInput as error:
+            self._wanted = self._quick = False
+            _tell(str(error))
+            return False
+
+    def frame(self, scene: bpy.types.Scene, evaluated: bpy.types.Scene) -> None:
+        """Solve and show the light of a frame at once; in playback leave it for later where that would take long."""
+        if not self.follows(scene):
+            return
+        whole = self.rendering or bpy.app.background
+        if not whole and self._seconds > _AT_ONCE:
+            request(scene)
+            return
+        try:
+            planned = study.relit(self._study, evaluated)
+        except BadInput as error:
+            _tell(str(error))
+            return
+        if planned.daylight == self._study.daylight and not (self._quick and whole):
+            _tell("")
+            return
+        self.stop()
+        self._start(planned, quick=not whole)
+        self._job.wait()
+        self._conclude(scene)
+        if self._quick:
+            request(scene)
+
+    def _begin(self, scene: bpy.types.Scene) -> bool:
+        now = time.monotonic()
+        settle = self._quick and now - self._changed_at > _REST
+        if not (self._wanted or settle):
+            return self._quick
+        if (settle or now - self._verified_at > 2.0 * _REST) and not self._verify():
+            return False
+        self._verified_at = now  # the scene hardly changes while one drags
+        planned = study.relit(self._study, scene)
+        wanted, self._wanted = self._wanted, False
+        if settle or (wanted and planned.daylight != self._study.daylight):
+            self._start(planned, quick=not settle)
+            return True
+        _tell("")
+        return self._quick
+
+    def _verify(self) -> bool:
+        begun = time.monotonic()
+        current_still = study.is_current(bpy.context, self._study)
+        self._verifying = time.monotonic() - begun
+        if current_still:
+            return True
+        self.disarm()
+        _tell(iface_("The scene changed since it was solved: solve again"))
+        return False
+
+    def _trusts(self, seconds: float) -> bool:
+        """Whether a scene is taken to stand as it did some seconds ago; in a render it cannot be looked at."""
+        return self.rendering or (self._verifying > _CHEAP and seconds < _AT_ONCE)
+
+    def _start(self, planned: study.Study, quick: bool) -> None:
+        solved = planned
+        if quick and planned.solving.get("cycles") is None:
+            tolerance = max(_QUICK_TOLERANCE, planned.solving.get("tolerance", 0.0))
+            solved = replace(planned, solving={**planned.solving, "tolerance": tolerance})
+        self._quick = quick
+        self._job = Job(solved, session.current)
+        self._job.start()
+
+    def _conclude(self, scene: bpy.types.Scene) -> None:
+        job, self._job = self._job, None
+        if isinstance(job.error, luz.LuzEspecularError | MemoryError):
+            _tell(solver_message(job.error))
+            self._quick = False
+        elif job.error is not None:
+            self.disarm()
+            raise job.error
+        elif self._trusts(job.elapsed) or self._verify():
+            self._seconds = job.elapsed
+            self._study = replace(job.study, solving=self._study.solving)
+            study.show(scene, job.study, job.result)
+            _tell("")
+
+
+current = Live()
+"""What this Blender follows; let go of when another file is loaded."""
+
+
+def request(scene: bpy.types.Scene) -> None:
+    """Ask for results that fit a scene's settings as they are now; nothing happens where they are not live."""
+    if bpy.app.background or not current.follows(scene):
+        return
+    current.want()
+    if not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=0.0)
+
+
+def _tick() -> float | None:
+    if bpy.context.window_manager.luzespecular.running:
+        current.stop()
+        return None
+    return _TICK if current.advance() else None
+
+
+def stop() -> None:
+    """Leave off, timer and all."""
+    current.disarm()
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+
+
+def _tell(text: str) -> None:
+    """Show a remark in the panel; in a render, where nobody looks at panels, log it."""
+    state = bpy.data.window_managers[0].luzespecular
+    if state.live_remark != text:
+        state.live_remark = text
+        if text and (current.rendering or bpy.app.background):
+            _log.warning(text)
