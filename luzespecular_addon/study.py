@@ -146,7 +146,7 @@ def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> tupl
     if scene is None or not is_current(context, study):
         raise refuse(rpt_("The scene changed while it was solved, so the results were thrown away: solve again"))
     notices = show(scene, study, result)
-    display.show(scene)
+    display.apply_view(scene)
     return notices
 
 
