@@ -38,6 +38,12 @@ QUANTITY_ITEMS = (
     ("sun_specular", "Sun, by mirrors", "Sunlight through mirrors and panes"),
     ("emitted", "Luminous surfaces", "Light from surfaces that emit by themselves, their mirror images included"),
     ("interreflected", "Interreflected", "Light that has met a diffuse surface"),
+    ("error", "Error", "Estimate of what 95 of 100 faces' errors are below; of fronts only"),
+)
+
+UNIT_ITEMS = (
+    ("LUX", "Lux", "Illuminance in lux"),
+    ("FACTOR", "Daylight Factor", "Share in % of what the whole sky, without Sun, gives an open horizontal plane"),
 )
 
 SCALE_ITEMS = (

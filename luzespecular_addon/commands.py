@@ -122,8 +122,9 @@ def _solve(options: argparse.Namespace) -> int:
         for hour, planned in _plans(settings, hours):
             settings.site.hour = hour
             _tell_new(planned.notices, told)
-            result = _run(planned)
-            _tell_new(study.finish(bpy.context, planned, result), told)
+            solved = _run(planned)
+            result = solved.result
+            _tell_new(study.finish(bpy.context, planned, result, solved.readings), told)
             rows = _print_table(planned, result)
             moment = f"{light.date_of(settings.site).isoformat()} {terminal.clock(hour)}"
             overview += [(moment, settings.site.time_kind.lower(), *tables.surface_row(row)) for row in rows]
@@ -182,7 +183,7 @@ def _apply(options: argparse.Namespace, settings: bpy.types.PropertyGroup) -> No
             setattr(getattr(settings, group), name, value)
 
 
-def _run(planned: study.Study) -> luz.Result:
+def _run(planned: study.Study) -> job.Job:
     running = job.Job(planned, session.current)
     running.start()
     show = terminal.Progress()
@@ -199,7 +200,7 @@ def _run(planned: study.Study) -> luz.Result:
         show.end()
     if running.error is not None:
         raise running.error
-    return running.result
+    return running
 
 
 def _print_table(planned: study.Study, result: luz.Result) -> list[tables.SurfaceStatistics]:

@@ -2,11 +2,86 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
 import bpy
 import numpy as np
+from bpy.app.translations import pgettext_iface as iface_
 from numpy.typing import NDArray
 
-from . import colours, mesh_arrays, results_object, writeback
+from .. import core as luz
+from . import (
+    colours,
+    contours,
+    errors,
+    false_colour,
+    mesh_arrays,
+    pins,
+    results_object,
+    session,
+    smoothing,
+    work_planes,
+    writeback,
+)
+from .export import Export
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A mesh that carries false colours, and the values they stand for.
+
+    Attributes
+    ----------
+    object_ : bpy.types.Object
+    values : (p,) float32
+        Value of each face in the unit of the legend; NaN where there is none.
+    """
+
+    object_: bpy.types.Object
+    values: NDArray[np.float32]
+
+    @property
+    def mesh(self) -> bpy.types.Mesh:
+        """The mesh of the object."""
+        return self.object_.data
+
+    @cached_property
+    def corner_values(self) -> NDArray[np.float64]:
+        """(c,) float: mean of the faces around each corner."""
+        mesh = self.mesh
+        vertices = mesh_arrays.corner_vertices(mesh)
+        if self.object_.luzespecular.is_results:  # triangles apart: those that touch are found by where they stand
+            groups = np.repeat(mesh_arrays.read_face_values(mesh, results_object.SURFACE, np.int32), 3)
+            points = mesh_arrays.vertex_positions(mesh)
+            tolerance = 1e-5 * float(np.ptp(points, axis=0).max(initial=0.0)) or 1.0
+            vertices = smoothing.weld(points, groups, tolerance)
+        return smoothing.corner_means(
+            self.values,
+            mesh_arrays.polygon_areas(mesh),
+            mesh_arrays.polygon_normals(mesh),
+            mesh_arrays.corner_counts(mesh),
+            vertices,
+        )
+
+
+def write(
+    scene: bpy.types.Scene, export: Export, result: luz.Result, readings: Sequence[work_planes.Reading] = ()
+) -> None:
+    """Write a result to a scene, in place of the one before, and colour it; which objects show is left as it is."""
+    results = scene.luzespecular.results
+    results.sky_illuminance = result.light.sky_illuminance
+    results.has_sun = result.light.sun_illuminance > 0.0
+    for own in writeback.own_results(export, result):
+        writeback.write(own)
+    session.current.keep_result(scene.name, export, result)
+    if scene.luzespecular.display.view == "RESULTS":
+        results_object.write(scene, export, result)
+    else:
+        results_object.remove(scene)
+    work_planes.write(scene, readings)
+    recolour(scene)
 
 
 def show(scene: bpy.types.Scene) -> None:
@@ -15,19 +90,105 @@ def show(scene: bpy.types.Scene) -> None:
     apply_view(scene)
 
 
+def switch_view(scene: bpy.types.Scene) -> None:
+    """Show what the settings ask for now, making the fine faces if they are asked for and still known."""
+    if has_results(scene) and scene.luzespecular.display.view == "RESULTS" and not results_object.all_of(scene):
+        kept = session.current.result_of(scene.name)
+        if kept is not None:
+            results_object.write(scene, *kept)
+    show(scene)
+
+
 def recolour(scene: bpy.types.Scene) -> None:
-    """Colour the fine faces and the user's meshes anew by the scene's display settings; no lux changes."""
-    quantity = scene.luzespecular.display.quantity
-    fine = _values([object_.data for object_ in results_object.all_of(scene)], quantity)
-    own = _values(writeback.written_meshes(scene), writeback.ILLUMINANCE)
-    if not fine and not own:
+    """Colour all that holds results anew by the scene's display settings; no lux changes."""
+    shown = shown_meshes(scene)
+    if not shown:
         return
-    scale = _scale(scene, fine or own)
-    for mesh, values in [*fine, *own]:
-        corners = mesh_arrays.corner_counts(mesh)
-        mesh_arrays.write_corner_colours(mesh, writeback.COLOURS, colours.corner_colours(values, corners, scale))
-        mesh_arrays.make_colour_active(mesh, writeback.COLOURS)
-        mesh.update_tag()
+    if scene.luzespecular.display.quantity == "error":
+        errors.find(scene.name, session.current, _errors_found)
+    scale = _scale(scene, shown)
+    smooth = scene.luzespecular.display.shading == "SMOOTH"
+    for one in shown:
+        _colour(one, scale, smooth)
+    for one in _own(scene) if shows_fine(scene) else []:
+        _colour(one, scale, smooth=False)
+    contours.update(scene, shown, scale)
+    pins.attach(scene, shown)
+    false_colour.update(scene, scale)
+
+
+def _colour(one: Shown, scale: colours.ColourScale, smooth: bool) -> None:
+    mesh, counts = one.mesh, mesh_arrays.corner_counts(one.mesh)
+    if smooth:
+        values = one.corner_values
+        rgba = colours.corner_colours(values, 1, scale)
+    else:
+        values = np.repeat(one.values, counts)
+        rgba = colours.corner_colours(one.values, counts, scale)
+    mesh_arrays.write_corner_colours(mesh, writeback.COLOURS, rgba)
+    mesh_arrays.write_corner_floats(mesh, writeback.SHOWN, false_colour.shader_values(values))
+    mesh_arrays.make_colour_active(mesh, writeback.COLOURS)
+    mesh.update_tag()
+
+
+def shown_meshes(scene: bpy.types.Scene) -> list[Shown]:
+    """Return what the viewport shows in false colours: the fine faces or the user's own, and the work planes."""
+    fine = [_shown(scene, object_) for object_ in results_object.all_of(scene)] if shows_fine(scene) else []
+    planes = [object_ for object_ in work_planes.all_of(scene) if writeback.holds_results(object_.data)]
+    return (fine or _own(scene)) + [_shown(scene, plane) for plane in planes]
+
+
+def _own(scene: bpy.types.Scene) -> list[Shown]:
+    """Return the user's own meshes that hold results, each once."""
+    own = {
+        object_.data: object_
+        for object_ in scene.objects
+        if object_.type == "MESH" and not object_.luzespecular.plane.enabled
+    }
+    return [_shown(scene, object_) for mesh, object_ in own.items() if writeback.holds_results(mesh)]
+
+
+def _shown(scene: bpy.types.Scene, object_: bpy.types.Object) -> Shown:
+    name = writeback.attribute_of(scene.luzespecular.display.quantity)
+    values = mesh_arrays.read_face_values(object_.data, name, np.float32)
+    if values is None:
+        values = np.full(len(object_.data.polygons), np.nan, np.float32)
+    return Shown(object_, values * np.float32(unit_factor(scene)))
+
+
+def _errors_found(scene_name: str) -> None:
+    """Write the errors of the result that is shown, which were still on their way, and show them."""
+    scene, kept = bpy.data.scenes.get(scene_name), session.current.result_of(scene_name)
+    if scene is None or kept is None or not has_results(scene):
+        return
+    for own in writeback.own_results(*kept):
+        writeback.write(own)
+    if results_object.all_of(scene):
+        results_object.write(scene, *kept)
+    recolour(scene)
+
+
+def shows_fine(scene: bpy.types.Scene) -> bool:
+    """Whether the fine faces carry the colours."""
+    return scene.luzespecular.display.view == "RESULTS" and bool(results_object.all_of(scene))
+
+
+def unit_factor(scene: bpy.types.Scene) -> float:
+    """Return by what lux are multiplied to be shown; NaN for daylight factors without a sky."""
+    if scene.luzespecular.display.unit == "LUX":
+        return 1.0
+    sky = scene.luzespecular.results.sky_illuminance
+    return 100.0 / sky if sky > 0.0 else float("nan")
+
+
+def unit_symbol(scene: bpy.types.Scene) -> str:
+    """Return the symbol of the unit that values are shown in."""
+    return "lx" if scene.luzespecular.display.unit == "LUX" else "%"
+
+
+def factor_name(scene: bpy.types.Scene) -> str:
+    """Return what shares of the open sky's illuminance are called: with the Sun they are no daylight factors."""
+    return iface_("Share of open sky") if scene.luzespecular.results.has_sun else iface_("Daylight factor")
 
 
 def has_results(scene: bpy.types.Scene) -> bool:
@@ -44,12 +205,12 @@ def current_scale(scene: bpy.types.Scene) -> colours.ColourScale:
 def apply_view(scene: bpy.types.Scene) -> None:
     """Show the fine faces in place of the objects they stand for, or those objects themselves, as the settings say."""
     settings = scene.luzespecular.display
-    show_fine = settings.view == "RESULTS" and bool(results_object.all_of(scene))
+    show_fine = shows_fine(scene)
     shown_sides = {"front", "back"} if settings.show_backs else {"front"}
     standing_for = {row.object_name for row in scene.luzespecular.results.rows} if show_fine else set()
     for object_ in scene.objects:
         role = object_.luzespecular
-        if role.is_results:
+        if role.results_side in results_object.NAMES:
             _set_hidden(scene, object_, not (show_fine and role.results_side in shown_sides))
         elif object_.name in standing_for and not role.hidden_for_results:
             if _set_hidden(scene, object_, True):
@@ -59,34 +220,37 @@ def apply_view(scene: bpy.types.Scene) -> None:
             role.property_unset("hidden_for_results")
     if has_results(scene):
         _shade_viewports(scene, backface_culling=show_fine)
+    false_colour.apply(scene)
 
 
 def clear(scene: bpy.types.Scene) -> None:
-    """Take away all that results brought: attributes, the fine faces, hidden objects, viewport shading, tables."""
+    """Take away all that results brought: attributes, fine faces, lines, renders, hidden objects, shading, tables."""
+    scene.luzespecular.display.property_unset("in_renders")
     results_object.remove(scene)
+    contours.remove(scene)
     for mesh in writeback.written_meshes(scene):
         writeback.clear(mesh)
+    work_planes.forget_values(scene)
     scene.luzespecular.results.rows.clear()
     apply_view(scene)
     _restore_viewports(scene)
     scene.luzespecular.property_unset("results")
+    session.current.forget_result()
 
 
-def _values(meshes: list[bpy.types.Mesh], quantity: str) -> list[tuple[bpy.types.Mesh, NDArray]]:
-    found = [(mesh, mesh_arrays.read_face_values(mesh, quantity, np.float32)) for mesh in meshes]
-    return [(mesh, values) for mesh, values in found if values is not None]
-
-
-def _scale(scene: bpy.types.Scene, shown: list[tuple[bpy.types.Mesh, NDArray]]) -> colours.ColourScale:
+def _scale(scene: bpy.types.Scene, shown: list[Shown]) -> colours.ColourScale:
     settings, results = scene.luzespecular.display, scene.luzespecular.results
     logarithmic = settings.scaling == "LOG"
     if settings.use_fixed_range:
-        low, high = settings.low, max(settings.high, settings.low * 1.001)
+        low, high = (
+            (settings.low, settings.high) if settings.unit == "LUX" else (settings.low_percent, settings.high_percent)
+        )
+        high = max(high, low * 1.001)
         if logarithmic:
             low = max(low, high * colours.LOWEST_SHARE)
     else:
-        values = np.concatenate([values for _, values in shown])
-        areas = np.concatenate([mesh_arrays.polygon_areas(mesh) for mesh, _ in shown])
+        values = np.concatenate([one.values for one in shown])
+        areas = np.concatenate([mesh_arrays.polygon_areas(one.mesh) for one in shown])
         low, high = colours.automatic_range(values, areas, logarithmic)
     results.legend_low, results.legend_high = low, high
     return colours.ColourScale(settings.scale, low, high, logarithmic)

@@ -9,6 +9,7 @@ import time
 from .. import core as luz
 from .session import Session
 from .study import Study
+from .work_planes import Reading
 
 
 class Job:
@@ -17,6 +18,8 @@ class Job:
     Attributes
     ----------
     result : luz.Result or None
+    readings : list of work_planes.Reading
+        What was read on the work planes.
     error : Exception or None
         Why there is no result.
     """
@@ -25,6 +28,7 @@ class Job:
         self.study = planned
         self._progress: queue.SimpleQueue[tuple[float, str]] = queue.SimpleQueue()
         self.result: luz.Result | None = None
+        self.readings: list[Reading] = []
         self.error: Exception | None = None
         self._kept = kept
         self._cancelled = threading.Event()
@@ -70,7 +74,9 @@ class Job:
 
     def _run(self) -> None:
         try:
-            self.result = self.study.run(self._kept, self._tell)
+            result = self.study.run(self._kept, self._tell)
+            self.readings = self.study.read(result, self._tell)
+            self.result = result
         except Exception as error:  # noqa: BLE001 - handed over to the main thread, which tells the user
             self.error = error
 

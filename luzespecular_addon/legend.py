@@ -1,22 +1,19 @@
-"""The legend in the 3D viewport: the colour bar with its lux, crisp at every resolution, readable on every theme."""
+"""The legend in the 3D viewport: the colour bar with its values, crisp at every resolution, readable on every theme."""
 
 from __future__ import annotations
 
-import blf
 import bpy
 import gpu
 import numpy as np
 from bpy.app.translations import pgettext_iface as iface_
 from gpu_extras.batch import batch_for_shader
 
-from . import colours, display
+from . import colours, display, drawing
 from .choices import QUANTITY_ITEMS
 from .translations import CONTEXT
 
 _STEPS = 64
-_MARGIN, _WIDTH, _HEIGHT, _PADDING, _TEXT = 24, 18, 220, 10, 12  # pixels at a resolution scale of 1
-_PANEL_COLOUR = (0.08, 0.08, 0.08, 0.78)
-_TEXT_COLOUR = (0.95, 0.95, 0.95, 1.0)
+_MARGIN, _WIDTH, _HEIGHT = 24, 18, 220  # pixels at a resolution scale of 1
 
 _handles: list[object] = []
 
@@ -44,44 +41,43 @@ def entries(scale: colours.ColourScale) -> list[tuple[float, str]]:
     return list(zip(scale.position(ticks).tolist(), (label(tick) for tick in ticks), strict=True))
 
 
+def title(scene: bpy.types.Scene) -> str:
+    """Return the legend's heading: the quantity shown and its unit."""
+    settings = scene.luzespecular.display
+    name = next(name for key, name, _ in QUANTITY_ITEMS if key == settings.quantity)
+    what = iface_("Illuminance") if settings.unit == "LUX" else display.factor_name(scene)
+    return f"{what}: {iface_(name, CONTEXT)} [{display.unit_symbol(scene)}]"
+
+
 def _draw() -> None:
     scene, space = bpy.context.scene, bpy.context.space_data
     settings = scene.luzespecular.display
     if not (settings.show_legend and space.overlay.show_overlays and display.has_results(scene)):
         return
-    size = bpy.context.preferences.system.ui_scale
+    size = drawing.size()
+    drawing.begin_texts()
     scale = display.current_scale(scene)
-    lines = [title(scene), *(scene.luzespecular.results.title.split("\n"))]
-    ticks = entries(scale)
-    font = 0
-    blf.size(font, _TEXT * size)
-    text_width = max(blf.dimensions(font, text)[0] for text in [*lines, *(text for _, text in ticks)])
-    margin, width, height, padding = (_pixels * size for _pixels in (_MARGIN, _WIDTH, _HEIGHT, _PADDING))
-    line = 1.5 * _TEXT * size
-    panel_width = max(text_width, width + padding + text_width * 0.5) + 2 * padding
+    lines = [title(scene), *scene.luzespecular.results.title.split("\n")]
+    ticks, missing = entries(scale), iface_("not computed")
+    margin, width, height, padding = (pixels * size for pixels in (_MARGIN, _WIDTH, _HEIGHT, drawing.PADDING))
+    line = drawing.LINE * size
+    beside = width + padding + drawing.width_of([missing, *(text for _, text in ticks)])
+    panel_width = max(drawing.width_of(lines), beside) + 2 * padding
     panel_height = height + (len(lines) + 2) * line + 2 * padding
-    left, bottom = _left_edge() + margin, margin
+    left, bottom = round(_left_edge() + margin), round(margin)
     gpu.state.blend_set("ALPHA")
-    _rectangle(left, bottom, panel_width, panel_height, _PANEL_COLOUR)
-    bar_left, bar_bottom = left + padding, bottom + padding + 1.5 * line
-    _bar(scale.name, bar_left, bar_bottom, width, height)
-    _hatch(bar_left, bottom + padding, width, 0.8 * line)
-    _text(font, iface_("not computed"), bar_left + width + padding, bottom + padding + 0.2 * line)
+    drawing.rectangle(left, bottom, panel_width, panel_height, drawing.PANEL_COLOUR)
+    bar_left, bar_bottom = round(left + padding), round(bottom + padding + 1.5 * line)
+    _bar(scale.name, bar_left, bar_bottom, round(width), round(height))
+    _hatch(bar_left, round(bottom + padding), round(width), round(0.8 * line))
+    drawing.text(missing, bar_left + width + padding, bottom + padding + 0.2 * line)
     for position, text in ticks:
         y = bar_bottom + position * height
-        _rectangle(bar_left + width, y - 0.5 * size, 0.4 * padding, size, _TEXT_COLOUR)
-        _text(font, text, bar_left + width + padding, y - 0.35 * _TEXT * size)
+        drawing.rectangle(bar_left + width, y - 0.5 * size, 0.4 * padding, size, drawing.TEXT_COLOUR)
+        drawing.text(text, bar_left + width + padding, y - 0.35 * drawing.TEXT * size)
     for row, text in enumerate(reversed(lines)):
-        _text(font, text, bar_left, bar_bottom + height + (row + 0.8) * line)
+        drawing.text(text, bar_left, bar_bottom + height + (row + 0.8) * line)
     gpu.state.blend_set("NONE")
-
-
-def title(scene: bpy.types.Scene) -> str:
-    """Return the legend's heading: the quantity shown and its unit."""
-    settings = scene.luzespecular.display
-    quantity = settings.quantity if settings.view == "RESULTS" else "illuminance"
-    name = next(name for key, name, _ in QUANTITY_ITEMS if key == quantity)
-    return f"{iface_('Illuminance')}: {iface_(name, CONTEXT)} [lx]"
 
 
 def _left_edge() -> float:
@@ -89,13 +85,6 @@ def _left_edge() -> float:
     area = bpy.context.area
     tools = next((region for region in area.regions if region.type == "TOOLS"), None)
     return tools.width if tools and bpy.context.preferences.system.use_region_overlap else 0
-
-
-def _rectangle(left: float, bottom: float, width: float, height: float, colour: tuple[float, ...]) -> None:
-    corners = ((left, bottom), (left + width, bottom), (left + width, bottom + height), (left, bottom + height))
-    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-    shader.uniform_float("color", colour)
-    batch_for_shader(shader, "TRIS", {"pos": corners}, indices=((0, 1, 2), (0, 2, 3))).draw(shader)
 
 
 def _bar(scale_name: str, left: float, bottom: float, width: float, height: float) -> None:
@@ -113,9 +102,3 @@ def _hatch(left: float, bottom: float, width: float, height: float) -> None:
     corners = ((left, bottom), (left + width, bottom), (left, bottom + height), (left + width, bottom + height))
     shader = gpu.shader.from_builtin("SMOOTH_COLOR")
     batch_for_shader(shader, "TRI_STRIP", {"pos": corners, "color": (dark, light, light, dark)}).draw(shader)
-
-
-def _text(font: int, text: str, x: float, y: float) -> None:
-    blf.color(font, *_TEXT_COLOUR)
-    blf.position(font, round(x), round(y), 0)
-    blf.draw(font, text)

@@ -161,7 +161,7 @@ class Live:
         solved = planned
         if quick and planned.solving.get("cycles") is None:
             tolerance = max(_QUICK_TOLERANCE, planned.solving.get("tolerance", 0.0))
-            solved = replace(planned, solving={**planned.solving, "tolerance": tolerance})
+            solved = replace(planned, solving={**planned.solving, "tolerance": tolerance}, grids=())
         self._quick = quick
         self._job = Job(solved, session.current)
         self._job.start()
@@ -177,7 +177,7 @@ class Live:
         elif self._trusts(job.elapsed) or self._verify():
             self._seconds = job.elapsed
             self._study = replace(job.study, solving=self._study.solving)
-            study.show(scene, job.study, job.result)
+            study.show(scene, job.study, job.result, job.readings)
             _tell("")
 
 

@@ -78,6 +78,45 @@ def polygon_areas(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
     return areas
 
 
+def polygon_normals(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Return the unit normal of each polygon, (p, 3) float32, object space."""
+    normals = np.empty((len(mesh.polygons), 3), np.float32)
+    mesh.polygon_normals.foreach_get("vector", normals.reshape(-1))
+    return normals
+
+
+def polygon_centres(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Return the centre of each polygon, (p, 3) float32, object space."""
+    centres = np.empty((len(mesh.polygons), 3), np.float32)
+    mesh.polygons.foreach_get("center", centres.reshape(-1))
+    return centres
+
+
+def vertex_positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Return the position of each vertex, (v, 3) float32, object space."""
+    positions = np.empty((len(mesh.vertices), 3), np.float32)
+    if len(positions):
+        mesh.attributes["position"].data.foreach_get("vector", positions.reshape(-1))
+    return positions
+
+
+def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Return the vertex of each corner, (l,) int32."""
+    vertices = np.empty(len(mesh.loops), np.int32)
+    if len(vertices):
+        mesh.attributes[".corner_vert"].data.foreach_get("value", vertices)
+    return vertices
+
+
+def triangle_corners(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Return the corners of the triangles that a mesh is cut into, (t, 3) int32."""
+    mesh.calc_loop_triangles()
+    corners = np.empty((len(mesh.loop_triangles), 3), np.int32)
+    if len(corners):
+        mesh.loop_triangles.foreach_get("loops", corners.reshape(-1))
+    return corners
+
+
 def read_face_values(mesh: bpy.types.Mesh, name: str, dtype: type) -> NDArray | None:
     """Read a FLOAT or INT attribute of the FACE domain, (p,); None where there is no such attribute."""
     attribute = mesh.attributes.get(name)
@@ -88,6 +127,15 @@ def read_face_values(mesh: bpy.types.Mesh, name: str, dtype: type) -> NDArray | 
     return values
 
 
+def face_value(mesh: bpy.types.Mesh, name: str, face: int) -> float | None:
+    """Return the value of one face in a FLOAT or INT attribute of the FACE domain; None without one, and for NaN."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != "FACE" or not 0 <= face < len(attribute.data):
+        return None
+    value = float(attribute.data[face].value)
+    return None if np.isnan(value) else value
+
+
 def write_face_floats(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
     """Write (p,) floats as a FLOAT attribute of the FACE domain, made anew if absent."""
     _attribute(mesh, name, "FLOAT", "FACE").data.foreach_set("value", np.ascontiguousarray(values, np.float32))
@@ -96,6 +144,21 @@ def write_face_floats(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
 def write_face_integers(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
     """Write (p,) integers as an INT attribute of the FACE domain, made anew if absent."""
     _attribute(mesh, name, "INT", "FACE").data.foreach_set("value", np.ascontiguousarray(values, np.int32))
+
+
+def write_corner_floats(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
+    """Write (l,) floats as a FLOAT attribute of the CORNER domain, made anew if absent."""
+    _attribute(mesh, name, "FLOAT", "CORNER").data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+
+
+def read_corner_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float32] | None:
+    """Read a FLOAT attribute of the CORNER domain, (l,); None where there is no such attribute."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != "CORNER" or len(attribute.data) != len(mesh.loops):
+        return None
+    values = np.empty(len(mesh.loops), np.float32)
+    attribute.data.foreach_get("value", values)
+    return values
 
 
 def write_corner_colours(mesh: bpy.types.Mesh, name: str, colours: NDArray) -> None:
@@ -123,20 +186,81 @@ def remove_attribute(mesh: bpy.types.Mesh, name: str) -> None:
         mesh.attributes.remove(attribute)
 
 
-def new_triangle_mesh(name: str, vertices: NDArray) -> bpy.types.Mesh:
-    """Make a mesh of separate triangles from (n, 3, 3) positions in Blender units."""
-    count = len(vertices)
+def new_mesh(name: str, vertices: NDArray, corners: NDArray, starts: NDArray) -> bpy.types.Mesh:
+    """Make a mesh of polygons.
+
+    Parameters
+    ----------
+    name : str
+    vertices : (v, 3) float
+        Blender units.
+    corners : (l,) int
+        Vertex of each corner, the corners of a polygon one after another.
+    starts : (p,) int
+        First corner of each polygon.
+    """
     mesh = bpy.data.meshes.new(name)
-    mesh.vertices.add(3 * count)
-    mesh.loops.add(3 * count)
-    mesh.polygons.add(count)
-    if count:
-        corners = np.arange(3 * count, dtype=np.int32)
+    mesh.vertices.add(len(vertices))
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(len(starts))
+    if len(starts):
         mesh.attributes["position"].data.foreach_set("vector", np.ascontiguousarray(vertices, np.float32).reshape(-1))
-        mesh.loops.foreach_set("vertex_index", corners)
-        mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(corners[::3]))
+        mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(corners, np.int32))
+        mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(starts, np.int32))
         mesh.update(calc_edges=True)
     return mesh
+
+
+def new_triangle_mesh(name: str, vertices: NDArray) -> bpy.types.Mesh:
+    """Make a mesh of separate triangles from (n, 3, 3) positions in Blender units."""
+    count = 3 * len(vertices)
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(count)
+    mesh.edges.add(count)
+    mesh.loops.add(count)
+    mesh.polygons.add(len(vertices))
+    if count:
+        corners = np.arange(count, dtype=np.int32)
+        # Each corner has an edge of its own: Blender's search for edges would take several times as long as all else.
+        edges = np.column_stack([corners, corners.reshape(-1, 3)[:, [1, 2, 0]].reshape(-1)])
+        mesh.attributes["position"].data.foreach_set("vector", np.ascontiguousarray(vertices, np.float32).reshape(-1))
+        mesh.attributes[".corner_vert"].data.foreach_set("value", corners)
+        mesh.attributes[".corner_edge"].data.foreach_set("value", corners)
+        mesh.attributes[".edge_verts"].data.foreach_set("value", edges.reshape(-1))
+        mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(corners[::3]))
+        mesh.update()
+    return mesh
+
+
+def replace_edges(mesh: bpy.types.Mesh, ends: NDArray) -> None:
+    """Make a mesh one of separate edges between (k, 2, 3) positions in Blender units, whatever it was before."""
+    count = len(ends)
+    mesh.clear_geometry()
+    mesh.vertices.add(2 * count)
+    mesh.edges.add(count)
+    if count:
+        mesh.attributes["position"].data.foreach_set("vector", np.ascontiguousarray(ends, np.float32).reshape(-1))
+        mesh.edges.foreach_set("vertices", np.arange(2 * count, dtype=np.int32))
+
+
+def edge_ends(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Return the ends of the edges that `replace_edges` made, (k, 2, 3) float32."""
+    return vertex_positions(mesh).reshape(-1, 2, 3)
+
+
+def write_edge_floats(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
+    """Write (e,) floats as a FLOAT attribute of the EDGE domain, made anew if absent."""
+    _attribute(mesh, name, "FLOAT", "EDGE").data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+
+
+def read_edge_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float32] | None:
+    """Read a FLOAT attribute of the EDGE domain, (e,); None where there is no such attribute."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != "EDGE" or len(attribute.data) != len(mesh.edges):
+        return None
+    values = np.empty(len(mesh.edges), np.float32)
+    attribute.data.foreach_get("value", values)
+    return values
 
 
 class ActiveNames(NamedTuple):

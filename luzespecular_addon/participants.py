@@ -28,7 +28,7 @@ def rendered_objects(view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
 def takes_part(object_: bpy.types.Object) -> bool:
     """Whether an object's own settings let it take part."""
     settings = object_.luzespecular
-    return not (object_.hide_render or settings.is_results or settings.role == "IGNORE")
+    return not (object_.hide_render or settings.is_results or settings.plane.enabled or settings.role == "IGNORE")
 
 
 def instanced_objects(collection: bpy.types.Collection) -> set[bpy.types.Object]:

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import core as luz
 from ..core import tables
-from . import mesh_arrays
+from . import mesh_arrays, writeback
 from .export import Export
 
 NAMES = {"front": "LuzEspecular results", "back": "LuzEspecular results (backs)"}
@@ -27,35 +28,58 @@ def find(scene: bpy.types.Scene, side: str = "front") -> bpy.types.Object | None
 
 def all_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Return the results objects of a scene."""
-    return [object_ for object_ in scene.objects if object_.luzespecular.is_results]
+    return [object_ for object_ in scene.objects if object_.luzespecular.results_side in NAMES]
 
 
-def create(scene: bpy.types.Scene, export: Export, result: luz.Result) -> None:
-    """Make the results objects from the receivers' faces; they neither render nor take part in a run themselves."""
-    remove(scene)
+def write(scene: bpy.types.Scene, export: Export, result: luz.Result) -> None:
+    """Write the receivers' faces to the results objects; they neither render nor take part in a run themselves.
+
+    Objects whose faces are the same as before keep them and get new values alone.
+    """
     receivers = [surface.name for surface in export.surfaces if surface.receiver]
     parts = list(enumerate(tables.computed_faces(result, receivers)))
-    for label, name in NAMES.items():
-        chosen = [(row, side, faces) for row, (_, side_label, side, faces) in parts if side_label == label]
+    for label in NAMES:
+        chosen = [(row, faces) for row, (_, side, _, faces) in parts if side == label]
+        object_ = find(scene, label)
         if not chosen:
+            if object_ is not None:
+                _remove(object_)
             continue
-        corners = result.vertices[np.concatenate([faces for _, _, faces in chosen])] / export.unit_scale
-        mesh = mesh_arrays.new_triangle_mesh(name, corners if label == "front" else corners[:, ::-1])
-        for quantity in tables.quantities(result.front):
-            values = [tables.quantities(side)[quantity][faces] for _, side, faces in chosen]
-            mesh_arrays.write_face_floats(mesh, quantity, np.concatenate(values))
-        rows, counts = [row for row, _, _ in chosen], [len(faces) for _, _, faces in chosen]
-        mesh_arrays.write_face_integers(mesh, SURFACE, np.repeat(rows, counts))
-        object_ = bpy.data.objects.new(name, mesh)
-        object_.luzespecular.is_results, object_.luzespecular.results_side = True, label
-        object_.hide_render = True
-        scene.collection.objects.link(object_)
+        faces = np.concatenate([faces for _, faces in chosen])
+        corners = result.vertices[faces] / export.unit_scale
+        positions = (corners if label == "front" else corners[:, ::-1]).reshape(-1, 3).astype(np.float32)
+        if object_ is None or not _stands_at(object_.data, positions):
+            if object_ is not None:
+                _remove(object_)
+            object_ = _new(scene, label, positions)
+        for quantity, values in writeback.quantities(result, label).items():
+            mesh_arrays.write_face_floats(object_.data, writeback.attribute_of(quantity), values[faces])
+        rows = np.repeat([row for row, _ in chosen], [len(faces) for _, faces in chosen])
+        mesh_arrays.write_face_integers(object_.data, SURFACE, rows)
+        object_.data.update_tag()
+
+
+def _stands_at(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> bool:
+    return len(mesh.vertices) == len(positions) and np.array_equal(mesh_arrays.vertex_positions(mesh), positions)
+
+
+def _new(scene: bpy.types.Scene, label: str, positions: NDArray[np.float32]) -> bpy.types.Object:
+    mesh = mesh_arrays.new_triangle_mesh(NAMES[label], positions.reshape(-1, 3, 3))
+    object_ = bpy.data.objects.new(NAMES[label], mesh)
+    object_.luzespecular.is_results, object_.luzespecular.results_side = True, label
+    object_.hide_render = True
+    scene.collection.objects.link(object_)
+    return object_
 
 
 def remove(scene: bpy.types.Scene) -> None:
     """Delete the results objects of a scene together with their meshes."""
     for object_ in all_of(scene):
-        mesh = object_.data
-        bpy.data.objects.remove(object_)
-        if mesh.users == 0:
-            bpy.data.meshes.remove(mesh)
+        _remove(object_)
+
+
+def _remove(object_: bpy.types.Object) -> None:
+    mesh = object_.data
+    bpy.data.objects.remove(object_)
+    if mesh.users == 0:
+        bpy.data.meshes.remove(mesh)

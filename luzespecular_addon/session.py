@@ -1,10 +1,17 @@
-"""The transfer prepared last, kept while Blender runs, so that another hour or sky needs no new preparation."""
+"""What was prepared and solved last, kept while Blender runs.
+
+With the transfer another hour or sky needs no new preparation; with the result more can be shown of it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Hashable
+from typing import TYPE_CHECKING
 
 from .. import core as luz
+
+if TYPE_CHECKING:
+    from .export import Export
 
 
 class Session:
@@ -13,6 +20,7 @@ class Session:
     def __init__(self):
         self._key: Hashable = None
         self._transfer: luz.Transfer | None = None
+        self._result: tuple[str, Export, luz.Result] | None = None
 
     def get(self, key: Hashable) -> luz.Transfer | None:
         """Return the transfer prepared for the same geometry, materials and options, if it is the one kept."""
@@ -23,8 +31,21 @@ class Session:
         self._key, self._transfer = key, transfer
 
     def forget(self) -> None:
-        """Let go of the transfer and its memory."""
-        self._key = self._transfer = None
+        """Let go of the transfer and the result, and their memory."""
+        self._key = self._transfer = self._result = None
+
+    def result_of(self, scene_name: str) -> tuple[Export, luz.Result] | None:
+        """Return the result shown in a scene and what it was solved for, if it is the one kept."""
+        kept = self._result
+        return kept[1:] if kept is not None and kept[0] == scene_name else None
+
+    def keep_result(self, scene_name: str, export: Export, result: luz.Result) -> None:
+        """Keep the result shown in a scene in place of the one before."""
+        self._result = (scene_name, export, result)
+
+    def forget_result(self) -> None:
+        """Let go of the result."""
+        self._result = None
 
 
 current = Session()

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
@@ -15,7 +15,7 @@ from bpy.app.translations import pgettext_rpt as rpt_
 from .. import core as luz
 from ..core import tables
 from ..core.terminal import clock
-from . import display, export, light, results_object, session, writeback
+from . import display, export, light, session, work_planes, writeback
 from .choices import SKY_ITEMS
 from .materials import as_typed
 from .notices import Notice, refuse, stop_on_errors
@@ -49,6 +49,8 @@ class Study:
         Scene and view layer that the run is about.
     notices : tuple of Notice
         Warnings and notes so far.
+    grids : tuple of work_planes.Grid
+        Points in mid-air to read as well.
     """
 
     export: export.Export
@@ -59,11 +61,16 @@ class Study:
     scene_name: str
     layer_name: str
     notices: tuple[Notice, ...]
+    grids: tuple[work_planes.Grid, ...] = ()
 
     @property
     def key(self) -> Hashable:
         """What a prepared transfer has to agree in, to serve for this study."""
         return self.export.fingerprint, tuple(sorted(self.options.items()))
+
+    def read(self, result: luz.Result, progress: Progress) -> list[work_planes.Reading]:
+        """Compute the light on the work planes; raises `luz.Cancelled` when `progress` says so."""
+        return work_planes.read(result, self.grids, _part(progress, 1.0, 1.0))
 
     def run(self, kept: session.Session, progress: Progress) -> luz.Result:
         """Solve, with the kept transfer if it fits; raises `luz.Cancelled` when `progress` says so."""
@@ -104,6 +111,7 @@ def collect(context: bpy.types.Context, exported: export.Export | None = None) -
         scene.name,
         context.view_layer.name,
         (*remarks, *exported.notices),
+        _grids(scene.name, exported),
     )
 
 
@@ -117,7 +125,17 @@ def relit(study: Study, scene: bpy.types.Scene) -> Study:
     """
     daylight, remarks = light.daylight(scene)
     _refuse_darkness(scene, daylight, study.export)
-    return replace(study, daylight=daylight, title=title(scene), notices=(*remarks, *study.export.notices))
+    return replace(
+        study,
+        daylight=daylight,
+        title=title(scene),
+        notices=(*remarks, *study.export.notices),
+        grids=_grids(study.scene_name, study.export),
+    )
+
+
+def _grids(scene_name: str, exported: export.Export) -> tuple[work_planes.Grid, ...]:
+    return tuple(work_planes.grids(bpy.data.scenes[scene_name], exported.unit_scale))
 
 
 def _refuse_darkness(scene: bpy.types.Scene, daylight: luz.Daylight, exported: export.Export) -> None:
@@ -129,8 +147,10 @@ def _refuse_darkness(scene: bpy.types.Scene, daylight: luz.Daylight, exported: e
         raise refuse(text.format(hour=clock(scene.luzespecular.site.hour)))
 
 
-def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> tuple[Notice, ...]:
-    """Write the results of a run to the scene and show them.
+def finish(
+    context: bpy.types.Context, study: Study, result: luz.Result, readings: Sequence[work_planes.Reading] = ()
+) -> tuple[Notice, ...]:
+    """Write the results of a run, and what was read on its work planes, to the scene and show them.
 
     Returns
     -------
@@ -145,20 +165,18 @@ def finish(context: bpy.types.Context, study: Study, result: luz.Result) -> tupl
     scene = bpy.data.scenes.get(study.scene_name)
     if scene is None or not is_current(context, study):
         raise refuse(rpt_("The scene changed while it was solved, so the results were thrown away: solve again"))
-    notices = show(scene, study, result)
+    notices = show(scene, study, result, readings)
     display.apply_view(scene)
     return notices
 
 
-def show(scene: bpy.types.Scene, study: Study, result: luz.Result) -> tuple[Notice, ...]:
+def show(
+    scene: bpy.types.Scene, study: Study, result: luz.Result, readings: Sequence[work_planes.Reading] = ()
+) -> tuple[Notice, ...]:
     """Write results to meshes and tables and colour them, whatever the viewports show; see `finish`."""
-    own = writeback.own_results(study.export, result)
-    results_object.create(scene, study.export, result)
-    for results in own:
-        writeback.write(results)
     notices = (*study.notices, *_remarks_of_solver(study, result))
     _fill_table(scene, study, result, notices)
-    display.recolour(scene)
+    display.write(scene, study.export, result, readings)
     return notices
 
 

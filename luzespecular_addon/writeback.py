@@ -1,4 +1,4 @@
-"""From the solver back to the user's own meshes: lux per face as an attribute, and all that is needed to undo it.
+"""From the solver back to the user's own meshes: lux per face as attributes, and all that is needed to undo it.
 
 A face of the user's mesh gets the area-weighted mean of all solver faces that come from it, whether the modifiers cut
 it, copied it or left it alone. Faces without a value hold NaN. A mesh that several objects share cannot hold several
@@ -16,8 +16,9 @@ from bpy.app.translations import pgettext_rpt as rpt_
 from numpy.typing import NDArray
 
 from .. import core as luz
-from ..core.result import Side
-from . import mesh_arrays, participants
+from ..core import tables
+from . import errors, mesh_arrays, participants
+from .choices import QUANTITY_ITEMS
 from .export import Export, ExportedSurface
 from .notices import Notice
 
@@ -27,28 +28,35 @@ ILLUMINANCE = "illuminance"
 ILLUMINANCE_BACK = "illuminance_back"
 """The same of the other side, on meshes whose faces are lit on both sides."""
 
+SHOWN = "luzespecular_value"
+"""FLOAT attribute of the CORNER domain: the value that is shown, in the unit of the legend."""
+
 COLOURS = "luzespecular"
 """FLOAT_COLOR attribute of the CORNER domain, scene-linear false colours."""
 
-_NAMES = (ILLUMINANCE, ILLUMINANCE_BACK, COLOURS)
+
+def attribute_of(quantity: str) -> str:
+    """Return the name of the FLOAT attribute of the FACE domain that holds a quantity [lx]."""
+    return ILLUMINANCE if quantity == ILLUMINANCE else f"{ILLUMINANCE}_{quantity}"
+
+
+ATTRIBUTES = (*(attribute_of(quantity) for quantity, _, _ in QUANTITY_ITEMS), ILLUMINANCE_BACK, SHOWN, COLOURS)
+"""Names of all that is written to a user's mesh."""
 
 
 @dataclass(frozen=True)
 class OwnResults:
-    """Illuminance of the faces of one user mesh.
+    """Results of the faces of one user mesh.
 
     Attributes
     ----------
     object_name : str
-    illuminance : (p,) float64
-        [lx], NaN where nothing was computed.
-    illuminance_back : (p,) float64 or None
-        The same of the backs; None where no back was computed.
+    values : dict of str to (p,) float64
+        By attribute [lx], NaN where nothing was computed.
     """
 
     object_name: str
-    illuminance: NDArray[np.float64]
-    illuminance_back: NDArray[np.float64] | None
+    values: dict[str, NDArray[np.float64]]
 
 
 def refusals(objects: Iterable[bpy.types.Object]) -> list[Notice]:
@@ -58,7 +66,7 @@ def refusals(objects: Iterable[bpy.types.Object]) -> list[Notice]:
         mesh = object_.data
         if object_.type != "MESH" or holds_results(mesh) or not participants.takes_part(object_):
             continue
-        for name in _NAMES:
+        for name in ATTRIBUTES:
             if name in mesh.attributes:
                 text = rpt_("Object '{name}' has an attribute '{attribute}' that results would overwrite: rename it")
                 notices.append(Notice("ERROR", text.format(name=object_.name, attribute=name)))
@@ -66,48 +74,73 @@ def refusals(objects: Iterable[bpy.types.Object]) -> list[Notice]:
 
 
 def own_results(export: Export, result: luz.Result) -> list[OwnResults]:
-    """Return the illuminance of each user mesh that can hold results: means over all that became of a face."""
+    """Return the results of each user mesh that can hold them: means over all that became of a face."""
     by_object: dict[str, list[ExportedSurface]] = {}
     for surface in export.surfaces:
         if surface.receiver and surface.own_faces is not None:
             by_object.setdefault(surface.object_name, []).append(surface)
+    fronts = {attribute_of(name): values for name, values in quantities(result, "front").items()}
+    backs = {} if result.back is None else {ILLUMINANCE_BACK: result.back.illuminance}
     results = []
     for name, surfaces in by_object.items():
         count = len(bpy.data.objects[name].data.polygons)
-        front = _means(surfaces, result, result.front, count)
-        back = None if result.back is None else _means(surfaces, result, result.back, count)
-        results.append(OwnResults(name, front, None if back is None or np.isnan(back).all() else back))
+        values = _means(surfaces, result, fronts, count)
+        # Backs that nobody lit are no results.
+        values |= {
+            key: means for key, means in _means(surfaces, result, backs, count).items() if np.isfinite(means).any()
+        }
+        results.append(OwnResults(name, values))
     return results
 
 
-def _means(surfaces: list[ExportedSurface], result: luz.Result, side: Side, count: int) -> NDArray[np.float64]:
-    lumens, area = np.zeros(count), np.zeros(count)
-    for surface in surfaces:
-        faces = result.faces_of(surface.name)
-        own = surface.own_faces[result.source_faces[faces]]
-        values, weights = side.illuminance[faces], side.areas[faces]
-        known = (own >= 0) & ~np.isnan(values)
-        own, values, weights = own[known], values[known], weights[known]
-        lumens += np.bincount(own, weights * values, minlength=count)
-        area += np.bincount(own, weights, minlength=count)
-    return np.divide(lumens, area, out=np.full(count, np.nan), where=area > 0.0)
+def quantities(result: luz.Result, side: str) -> dict[str, NDArray[np.float64]]:
+    """Return all quantities of one side of the faces by name, (n,) [lx] each; errors of fronts, once they are known."""
+    if side == "back":
+        return tables.quantities(result.back)
+    error = errors.known(result)
+    return tables.quantities(result.front) | ({} if error is None else {"error": error})
+
+
+def _means(
+    surfaces: list[ExportedSurface], result: luz.Result, quantities_: dict[str, NDArray], count: int
+) -> dict[str, NDArray[np.float64]]:
+    """Area-weighted means over the solver's faces that come from each of `count` faces; NaN where there are none."""
+    if not quantities_:
+        return {}
+    faces = np.concatenate([result.faces_of(surface.name) for surface in surfaces])
+    own = np.concatenate(
+        [surface.own_faces[result.source_faces[result.faces_of(surface.name)]] for surface in surfaces]
+    )
+    known = (own >= 0) & ~np.isnan(next(iter(quantities_.values()))[faces])
+    own, faces = own[known], faces[known]
+    weights = result.areas[faces]
+    area = np.bincount(own, weights, minlength=count)
+    scale = np.divide(1.0, area, out=np.full(count, np.nan), where=area > 0.0)
+    return {
+        name: scale * np.bincount(own, weights * values[faces], minlength=count) for name, values in quantities_.items()
+    }
 
 
 def write(results: OwnResults) -> None:
-    """Write the illuminance to the object's mesh and remember what was active on it before."""
+    """Write the results to the object's mesh and remember what was active on it before."""
     mesh = bpy.data.objects[results.object_name].data
-    settings = mesh.luzespecular
-    if not holds_results(mesh):
-        before = mesh_arrays.active_names(mesh)
-        settings.active_attribute_before = before.attribute
-        settings.active_colour_before = before.colour
-        settings.render_colour_before = before.render_colour
-        settings.has_results = True
-    mesh_arrays.write_face_floats(mesh, ILLUMINANCE, results.illuminance)
-    if results.illuminance_back is None:
-        mesh_arrays.remove_attribute(mesh, ILLUMINANCE_BACK)
-    else:
-        mesh_arrays.write_face_floats(mesh, ILLUMINANCE_BACK, results.illuminance_back)
+    begin(mesh)
+    for name in ATTRIBUTES:
+        if name in results.values:
+            mesh_arrays.write_face_floats(mesh, name, results.values[name])
+        elif name not in (SHOWN, COLOURS):
+            mesh_arrays.remove_attribute(mesh, name)
+
+
+def begin(mesh: bpy.types.Mesh) -> None:
+    """Mark a mesh as one that holds results, and remember what is active on it; once, until `clear`."""
+    if holds_results(mesh):
+        return
+    settings, before = mesh.luzespecular, mesh_arrays.active_names(mesh)
+    settings.active_attribute_before = before.attribute
+    settings.active_colour_before = before.colour
+    settings.render_colour_before = before.render_colour
+    settings.has_results = True
 
 
 def written_meshes(scene: bpy.types.Scene) -> list[bpy.types.Mesh]:
@@ -127,7 +160,7 @@ def clear(mesh: bpy.types.Mesh) -> None:
     before = mesh_arrays.ActiveNames(
         settings.active_attribute_before, settings.active_colour_before, settings.render_colour_before
     )
-    for name in _NAMES:
+    for name in ATTRIBUTES:
         mesh_arrays.remove_attribute(mesh, name)
     mesh_arrays.restore_active(mesh, before)
     mesh.property_unset("luzespecular")

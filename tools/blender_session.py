@@ -38,3 +38,10 @@ def session() -> Iterator[None]:
             yield
         finally:  # while its files are still there
             addon_utils.disable(PACKAGE, default_set=True)
+
+
+def enable() -> None:
+    """Enable the extension again, after Blender went back to factory settings."""
+    import addon_utils
+
+    addon_utils.enable(PACKAGE, default_set=True)

@@ -106,7 +106,7 @@ class LUZESPECULAR_OT_solve(bpy.types.Operator):
         if job.error is not None:
             raise job.error
         try:
-            notices = study.finish(context, job.study, job.result)
+            notices = study.finish(context, job.study, job.result, job.readings)
         except BadInput as error:
             report_all(self, error.notices)
             return {"CANCELLED"}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
-from .. import display
-from .drawing import Sidebar, draw_notices
+from .. import display, isolines
+from .drawing import Sidebar, draw_notices, draw_wrapped
 
 
 class LUZESPECULAR_UL_surfaces(bpy.types.UIList):
@@ -34,25 +34,62 @@ class LUZESPECULAR_PT_results(Sidebar, bpy.types.Panel):
         settings, results = scene.luzespecular.display, scene.luzespecular.results
         layout.label(text=results.title, translate=False)
         layout.row().prop(settings, "view", expand=True)
+        if settings.view == "RESULTS" and not display.shows_fine(scene):
+            draw_wrapped(
+                layout.column(align=True), iface_("Solve again for the fine faces"), "INFO", context.region.width
+            )
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
         fine = column.column()
-        fine.active = settings.view == "RESULTS"
+        fine.active = display.shows_fine(scene)
         fine.prop(settings, "show_backs")
-        fine.prop(settings, "quantity")
-        column.prop(settings, "scale")
-        column.row().prop(settings, "scaling", expand=True)
-        column.prop(settings, "use_fixed_range")
-        if settings.use_fixed_range:
-            column.prop(settings, "low")
-            column.prop(settings, "high")
-        column.prop(settings, "show_legend")
+        column.prop(settings, "quantity")
+        column.row().prop(settings, "unit", expand=True)
+        if settings.unit == "FACTOR":
+            _draw_factor(column.column(align=True), results, context.region.width)
+        column.row().prop(settings, "shading", expand=True)
+        _draw_scale(column, settings)
+        _draw_lines(column, settings)
+        column.prop(settings, "in_renders")
+        row = layout.row(align=True)
+        row.operator("luzespecular.probe", icon="EYEDROPPER")
+        row.operator("luzespecular.clear_pins", text="", icon="X")
         _draw_table(layout, results)
         layout.operator("luzespecular.save_table", icon="FILE_TEXT")
         layout.operator("luzespecular.clear_results", icon="TRASH")
         if len(results.notices):
             draw_notices(layout.box(), results.notices, context.region.width)
+
+
+def _draw_factor(column: bpy.types.UILayout, results: bpy.types.PropertyGroup, width: float) -> None:
+    if results.sky_illuminance <= 0.0:
+        draw_wrapped(column, iface_("Without a sky there is no daylight factor"), "ERROR", width)
+    elif results.has_sun:
+        text = iface_("Sunlight counts too: for daylight factors choose an overcast sky without Sun")
+        draw_wrapped(column, text, "INFO", width)
+
+
+def _draw_scale(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    column.prop(settings, "scale")
+    column.row().prop(settings, "scaling", expand=True)
+    column.prop(settings, "use_fixed_range")
+    if settings.use_fixed_range:
+        ends = column.column(align=True)
+        for name in ("low", "high") if settings.unit == "LUX" else ("low_percent", "high_percent"):
+            ends.prop(settings, name)
+    column.prop(settings, "show_legend")
+
+
+def _draw_lines(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    column.prop(settings, "show_lines")
+    if settings.show_lines:
+        column.prop(settings, "line_levels")
+        try:
+            isolines.parse_levels(settings.line_levels)
+        except ValueError as error:
+            text = iface_("'{word}' is no illuminance: give numbers such as 100, 200, 300")
+            column.label(text=text.format(word=error), icon="ERROR", translate=False)
 
 
 def _side_name(row: bpy.types.PropertyGroup) -> str:

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import PointerProperty
 
 from .. import live
-from . import accuracy, materials, progress, results, site, sky, surfaces
+from . import accuracy, materials, progress, results, site, sky, surfaces, work_planes
 from .accuracy import LuzAccuracySettings
 from .kinds import BoolProperty
 from .materials import LuzMaterialSettings
@@ -39,7 +39,7 @@ class LuzSceneSettings(bpy.types.PropertyGroup):
     )
 
 
-_ROOMS = (materials, surfaces, site, sky, accuracy, results, progress)
+_ROOMS = (materials, work_planes, surfaces, site, sky, accuracy, results, progress)
 
 _CLASSES = (*(cls for room in _ROOMS for cls in room.CLASSES), LuzSceneSettings)
 

@@ -1,10 +1,10 @@
 """How results are shown, and what the last run left behind."""
 
 import bpy
-from bpy.props import CollectionProperty
+from bpy.props import CollectionProperty, FloatVectorProperty, PointerProperty
 
 from .. import display
-from ..choices import QUANTITY_ITEMS, SCALE_ITEMS
+from ..choices import QUANTITY_ITEMS, SCALE_ITEMS, UNIT_ITEMS
 from .kinds import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 
@@ -13,8 +13,11 @@ def _recolour(settings: "LuzDisplaySettings", _context: bpy.types.Context) -> No
 
 
 def _switch_view(settings: "LuzDisplaySettings", _context: bpy.types.Context) -> None:
-    display.apply_view(settings.id_data)
-    display.recolour(settings.id_data)
+    display.switch_view(settings.id_data)
+
+
+def _switch_renders(settings: "LuzDisplaySettings", _context: bpy.types.Context) -> None:
+    display.show(settings.id_data)
 
 
 class LuzDisplaySettings(bpy.types.PropertyGroup):
@@ -42,9 +45,22 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
     )
     quantity: EnumProperty(
         name="Quantity",
-        description="Which part of the light the fine faces show",
+        description="Which part of the light is shown",
         items=QUANTITY_ITEMS,
         default="illuminance",
+        update=_recolour,
+    )
+    unit: EnumProperty(
+        name="Unit", description="What the colours stand for", items=UNIT_ITEMS, default="LUX", update=_recolour
+    )
+    shading: EnumProperty(
+        name="Shading",
+        description="How colours lie on the faces",
+        items=(
+            ("FACES", "Faces", "Each face has the colour of its own mean"),
+            ("SMOOTH", "Smooth", "Colours run from corner to corner, each the mean of the faces that meet there"),
+        ),
+        default="FACES",
         update=_recolour,
     )
     scale: EnumProperty(
@@ -72,6 +88,35 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
         min=0.001,
         default=10_000.0,
         update=_recolour,
+    )
+    low_percent: FloatProperty(
+        name="From (%)",
+        description="Daylight factor at the low end of the scale",
+        min=0.0,
+        default=0.1,
+        update=_recolour,
+    )
+    high_percent: FloatProperty(
+        name="To (%)",
+        description="Daylight factor at the high end of the scale",
+        min=0.001,
+        default=10.0,
+        update=_recolour,
+    )
+    show_lines: BoolProperty(
+        name="Iso-lux Lines", description="Draw lines of equal illuminance with their values", update=_recolour
+    )
+    line_levels: StringProperty(
+        name="Levels",
+        description="Values to draw lines for, such as 100, 200, 300, 500; empty for those of the legend",
+        update=_recolour,
+    )
+    in_renders: BoolProperty(
+        name="In Renders",
+        description=(
+            "Have EEVEE and Cycles render the false colours: materials are overridden and tone mapping is off meanwhile"
+        ),
+        update=_switch_renders,
     )
     show_legend: BoolProperty(name="Legend", description="Draw the legend in the 3D viewport", default=True)
 
@@ -105,6 +150,20 @@ class LuzShading(bpy.types.PropertyGroup):
     backface_culling: BoolProperty()
 
 
+class LuzPin(bpy.types.PropertyGroup):
+    """A point on a face whose value stays written beside it; `name` is the object."""
+
+    place: FloatVectorProperty(size=3, subtype="XYZ")
+    normal: FloatVectorProperty(size=3, subtype="XYZ")
+    face: IntProperty()
+
+
+class LuzOverride(bpy.types.PropertyGroup):
+    """Material override of a view layer before the false colours; `name` is the view layer."""
+
+    material: PointerProperty(type=bpy.types.Material)
+
+
 class LuzResults(bpy.types.PropertyGroup):
     """What the last run left behind, apart from the meshes."""
 
@@ -115,6 +174,16 @@ class LuzResults(bpy.types.PropertyGroup):
     shadings: CollectionProperty(type=LuzShading)
     legend_low: FloatProperty()
     legend_high: FloatProperty()
+    sky_illuminance: FloatProperty()
+    has_sun: BoolProperty()
+    pins: CollectionProperty(type=LuzPin)
+    renders: BoolProperty()
+    false_colour: PointerProperty(type=bpy.types.Material)
+    overrides: CollectionProperty(type=LuzOverride)
+    view_transform_before: StringProperty()
+    look_before: StringProperty()
+    exposure_before: FloatProperty()
+    gamma_before: FloatProperty()
 
 
-CLASSES = (LuzDisplaySettings, LuzSurfaceRow, LuzNotice, LuzShading, LuzResults)
+CLASSES = (LuzDisplaySettings, LuzSurfaceRow, LuzNotice, LuzShading, LuzPin, LuzOverride, LuzResults)

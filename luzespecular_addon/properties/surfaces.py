@@ -1,8 +1,10 @@
 """The part that an object plays, and what was written to a mesh."""
 
 import bpy
+from bpy.props import PointerProperty
 
 from .kinds import BoolProperty, EnumProperty, StringProperty
+from .work_planes import LuzWorkPlane
 
 ROLE_ITEMS = (
     ("RECEIVER", "Receiver", "Blocks and reflects light, and gets results"),
@@ -33,6 +35,8 @@ class LuzObjectSettings(bpy.types.PropertyGroup):
     is_results: BoolProperty(options={"HIDDEN"})
     results_side: StringProperty(options={"HIDDEN"})
     hidden_for_results: BoolProperty(options={"HIDDEN"})
+    off_camera_for_results: BoolProperty(options={"HIDDEN"})
+    plane: PointerProperty(type=LuzWorkPlane)
 
 
 class LuzMeshSettings(bpy.types.PropertyGroup):

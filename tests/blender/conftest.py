@@ -14,9 +14,14 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = "bl_ext.user_default.luzespecular"
 ROOMS = (
     "colours",
+    "contours",
     "commands",
     "display",
+    "errors",
     "export",
+    "false_colour",
+    "floor_grid",
+    "isolines",
     "job",
     "legend",
     "library",
@@ -27,10 +32,14 @@ ROOMS = (
     "notices",
     "operators",
     "places",
+    "pins",
+    "probe",
     "results_object",
     "session",
+    "smoothing",
     "study",
     "translations",
+    "work_planes",
     "writeback",
 )
 
@@ -98,6 +107,14 @@ def addon(bpy):
     rooms = {name: importlib.import_module(f"{PACKAGE}.luzespecular_addon.{name}") for name in ROOMS}
     return SimpleNamespace(
         PACKAGE=f"{PACKAGE}.luzespecular_addon", luz=importlib.import_module(f"{PACKAGE}.core"), **rooms
+    )
+
+
+@pytest.fixture(scope="session")
+def addon_arrays(blender):
+    """Rooms that know arrays alone, for tests that run many times without Blender being reset between."""
+    return SimpleNamespace(
+        **{name: importlib.import_module(f"{PACKAGE}.luzespecular_addon.{name}") for name in ("isolines", "smoothing")}
     )
 
 

@@ -159,6 +159,16 @@ def test_panels_draw_in_every_state(addon, bpy, make):
     floor.data.materials[0].luzespecular.source = "SHADER"
     assert bpy.ops.luzespecular.solve() == {"FINISHED"}
     draw_all()
+    display = settings.display
+    display.unit, display.use_fixed_range, display.show_lines, display.line_levels = "FACTOR", True, True, "100 much"
+    assert bpy.ops.luzespecular.add_work_plane() == {"FINISHED"}
+    draw_all()
+    display.line_levels, display.view = "100", "OWN"
+    assert bpy.ops.luzespecular.solve() == {"FINISHED"}
+    draw_all()
+    bpy.context.object.location.z += 1.0
+    bpy.context.view_layer.update()
+    draw_all()
     bpy.context.window_manager.luzespecular.running = True
     draw_all()
     bpy.context.window_manager.luzespecular.running = False

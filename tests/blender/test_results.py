@@ -189,7 +189,7 @@ def test_components_add_up_on_the_fine_faces(addon, bpy, make, solve):
     solve()
     part = fine(addon, bpy)
     names = ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted", "interreflected")
-    total = sum(lux(addon, part, name) for name in names)
+    total = sum(lux(addon, part, f"illuminance_{name}") for name in names)
     np.testing.assert_allclose(total, lux(addon, part), rtol=1e-5, atol=1e-3)
 
 

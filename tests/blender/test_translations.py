@@ -9,7 +9,7 @@ import pytest
 
 ADDON = Path(__file__).resolve().parents[2] / "luzespecular_addon"
 TEXT_KEYWORDS = {"name", "description", "text"}
-TRANSLATING_CALLS = {"iface_", "rpt_", "poll_message_set"}
+TRANSLATING_CALLS = {"data_", "iface_", "rpt_", "poll_message_set"}
 PROPERTY_CALLS = {
     "BoolProperty",
     "CollectionProperty",

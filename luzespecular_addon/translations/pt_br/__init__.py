@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from . import accuracy, library, materials, notices, results, site, sky, solve, surfaces
+from . import accuracy, library, materials, notices, probe, results, site, sky, solve, surfaces, work_planes
 from .solver import SOLVER, STAGES
 
-_ROOMS = (site, sky, surfaces, materials, library, accuracy, solve, results, notices)
+_ROOMS = (site, sky, surfaces, materials, library, accuracy, solve, results, probe, work_planes, notices)
 
 OPERATORS = {english: text for room in _ROOMS for english, text in getattr(room, "OPERATORS", {}).items()}
 

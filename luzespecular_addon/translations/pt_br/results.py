@@ -35,7 +35,7 @@ TEXTS = {
         "Mostrar as faces finas dos versos; sem elas vê-se de fora, através das paredes, o interior"
     ),
     "Quantity": "Grandeza",
-    "Which part of the light the fine faces show": "Que parte da luz as faces finas mostram",
+    "Which part of the light is shown": "Que parte da luz se mostra",
     "Total": "Total",
     "All light, interreflection included": "Toda a luz, incluída a inter-reflexão",
     "Initial": "Inicial",
@@ -93,4 +93,49 @@ TEXTS = {
     "Save the table of surfaces as a CSV file": "Salvar a tabela das superfícies em um arquivo CSV",
     "There are no results yet: solve first": "Ainda não há resultados: calcule antes",
     "The table could not be saved: {error}": "Não foi possível salvar a tabela: {error}",
+    "Error": "Erro",
+    "Estimate of what 95 of 100 faces' errors are below; of fronts only": (
+        "Estimativa do valor abaixo do qual ficam os erros de 95 em 100 faces; só das frentes"
+    ),
+    "Unit": "Unidade",
+    "What the colours stand for": "O que as cores representam",
+    "Lux": "Lux",
+    "Illuminance in lux": "Iluminância em lux",
+    "Daylight Factor": "Fator de luz diurna",
+    "Share in % of what the whole sky, without Sun, gives an open horizontal plane": (
+        "Parcela em % do que o céu inteiro, sem Sol, dá a um plano horizontal desobstruído"
+    ),
+    "Daylight factor": "Fator de luz diurna",
+    "Share of open sky": "Parcela do céu aberto",
+    "Without a sky there is no daylight factor": "Sem céu não há fator de luz diurna",
+    "Sunlight counts too: for daylight factors choose an overcast sky without Sun": (
+        "A luz do Sol também conta: para fatores de luz diurna escolha um céu encoberto sem Sol"
+    ),
+    "Shading": "Sombreamento",
+    "How colours lie on the faces": "Como as cores ficam nas faces",
+    "Faces": "Faces",
+    "Each face has the colour of its own mean": "Cada face tem a cor da sua própria média",
+    "Smooth": "Suave",
+    "Colours run from corner to corner, each the mean of the faces that meet there": (
+        "As cores passam de canto a canto, cada um a média das faces que ali se encontram"
+    ),
+    "From (%)": "De (%)",
+    "Daylight factor at the low end of the scale": "Fator de luz diurna no extremo inferior da escala",
+    "To (%)": "Até (%)",
+    "Daylight factor at the high end of the scale": "Fator de luz diurna no extremo superior da escala",
+    "Iso-lux Lines": "Linhas isolux",
+    "Draw lines of equal illuminance with their values": "Desenhar linhas de igual iluminância com seus valores",
+    "Levels": "Níveis",
+    "Values to draw lines for, such as 100, 200, 300, 500; empty for those of the legend": (
+        "Valores das linhas, como 100, 200, 300, 500; vazio para os da legenda"
+    ),
+    "'{word}' is no illuminance: give numbers such as 100, 200, 300": (
+        "'{word}' não é uma iluminância: informe números como 100, 200, 300"
+    ),
+    "In Renders": "Nas renderizações",
+    "Have EEVEE and Cycles render the false colours: materials are overridden and tone mapping is off meanwhile": (
+        "EEVEE e Cycles renderizam as cores falsas: enquanto isso os materiais são substituídos "
+        "e o mapeamento de tons fica desligado"
+    ),
+    "Solve again for the fine faces": "Calcule de novo para ter as faces finas",
 }

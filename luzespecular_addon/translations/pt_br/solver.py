@@ -12,6 +12,7 @@ STAGES = {
     "sun": "Sol",
     "interreflection": "inter-reflexão",
     "solved": "calculado",
+    "work planes": "planos de trabalho",
 }
 
 # What the solver refuses or remarks, by the templates of its messages: a test holds them to the solver's source.

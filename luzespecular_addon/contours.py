@@ -1,0 +1,95 @@
+"""The object *LuzEspecular iso-lux lines*: lines of equal illuminance on all that is shown, and where labels stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from . import colours, isolines, mesh_arrays
+
+if TYPE_CHECKING:
+    from .display import Shown
+
+NAME = "LuzEspecular iso-lux lines"
+SIDE = "lines"
+
+VALUE = "illuminance"
+"""FLOAT attribute of the EDGE domain: the value that the line runs along, in the unit of the legend."""
+
+LABEL = "label"
+"""FLOAT attribute of the EDGE domain: 1 where a label stands."""
+
+_LIFT = 1e-3
+"""How far lines stand off the faces, over the extent of all that is shown."""
+
+_LABELS_APART = 0.12
+"""Least distance of labels, over the same."""
+
+
+def find(scene: bpy.types.Scene) -> bpy.types.Object | None:
+    """Return the object of the lines, if there is one."""
+    return next((object_ for object_ in scene.objects if object_.luzespecular.results_side == SIDE), None)
+
+
+def levels(scene: bpy.types.Scene, scale: colours.ColourScale) -> list[float]:
+    """Return the values that lines are drawn for: the user's own, or the legend's ticks."""
+    try:
+        own = isolines.parse_levels(scene.luzespecular.display.line_levels)
+    except ValueError:
+        own = []
+    return own or [float(tick) for tick in scale.ticks() if tick > 0.0]
+
+
+def update(scene: bpy.types.Scene, shown: Iterable[Shown], scale: colours.ColourScale) -> None:
+    """Draw the lines anew, or take them away, as the settings say."""
+    if not scene.luzespecular.display.show_lines:
+        remove(scene)
+        return
+    points, values = zip(*(_triangles(one) for one in shown), strict=True)
+    points, values = np.concatenate(points), np.concatenate(values)
+    lines = isolines.trace(points, values, levels(scene, scale))
+    normals = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    extent = float(np.ptp(points.reshape(-1, 3), axis=0).max(initial=0.0))
+    ends = lines.ends + _LIFT * extent * normals[lines.triangles][:, None]
+    labels = isolines.label_edges(lines, _LABELS_APART * extent)
+    object_ = find(scene) or _new(scene)
+    mesh = object_.data
+    mesh_arrays.replace_edges(mesh, ends)
+    mesh_arrays.write_edge_floats(mesh, VALUE, lines.values)
+    mesh_arrays.write_edge_floats(mesh, LABEL, np.isin(np.arange(len(ends)), labels))
+    mesh.update_tag()
+
+
+def remove(scene: bpy.types.Scene) -> None:
+    """Delete the object of the lines and its mesh."""
+    object_ = find(scene)
+    if object_ is not None:
+        mesh = object_.data
+        bpy.data.objects.remove(object_)
+        if mesh.users == 0:
+            bpy.data.meshes.remove(mesh)
+
+
+def _new(scene: bpy.types.Scene) -> bpy.types.Object:
+    object_ = bpy.data.objects.new(NAME, bpy.data.meshes.new(NAME))
+    object_.luzespecular.is_results, object_.luzespecular.results_side = True, SIDE
+    object_.hide_render = object_.hide_select = True
+    scene.collection.objects.link(object_)
+    return object_
+
+
+def _triangles(one: Shown) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return triangles in world space, (t, 3, 3), and the values at their corners, (t, 3)."""
+    mesh = one.mesh
+    corners = mesh_arrays.triangle_corners(mesh)
+    matrix = np.array(one.object_.matrix_world)
+    places = mesh_arrays.vertex_positions(mesh).astype(float) @ matrix[:3, :3].T + matrix[:3, 3]
+    triangles = places[mesh_arrays.corner_vertices(mesh)][corners]
+    if np.linalg.det(matrix[:3, :3]) < 0.0:
+        corners, triangles = corners[:, ::-1], triangles[:, ::-1]
+    return triangles, one.corner_values[corners]

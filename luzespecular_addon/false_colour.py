@@ -1,0 +1,211 @@
+"""False colours in renders: a node group that colours by the shown values, and what a scene needs to render it.
+
+EEVEE and Cycles show what the viewport shows. The user's materials stay as they are: the view layers override them
+while *In Renders* is on. All that was switched is remembered, and switched back.
+"""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+
+from . import colours, results_object, work_planes, writeback
+
+NAME = "LuzEspecular False Colour"
+
+_STOPS = 32  # as many as Blender's colour ramp holds
+_LEAST = 1e-6
+"""What a computed 0 is written as: a mesh without the attribute reads 0 in shaders."""
+
+_NOT_COMPUTED = -1.0
+_PLAIN_GREY = 0.18
+
+
+def shader_values(values: np.ndarray) -> np.ndarray:
+    """Return values as shaders can tell them apart: above 0 where computed, -1 where not; without attribute it is 0."""
+    return np.where(np.isnan(values), _NOT_COMPUTED, np.maximum(values, _LEAST))
+
+
+def apply(scene: bpy.types.Scene) -> None:
+    """Have renders show the false colours, or what they showed before, as the settings say."""
+    settings, results = scene.luzespecular.display, scene.luzespecular.results
+    carriers = results_object.all_of(scene)
+    shown = [object_ for object_ in carriers if not object_.hide_get(view_layer=scene.view_layers[0])]
+    planes = work_planes.all_of(scene)
+    active = settings.in_renders and bool(shown or any(writeback.holds_results(mesh) for mesh in _meshes(scene)))
+    for object_ in [*carriers, *planes]:
+        object_.hide_render = not (active and (object_ in shown or object_ in planes))
+    hide_own = active and bool(shown)
+    for object_ in scene.objects:
+        _hide_from_camera(object_, hide_own and object_.luzespecular.hidden_for_results)
+    if active:
+        material = results.false_colour or _new_material(results)
+        _set_up(material, culls=bool(shown))
+        _override(scene, material)
+    else:
+        _restore(scene)
+
+
+def update(scene: bpy.types.Scene, scale: colours.ColourScale) -> None:
+    """Bring the node group in step with the scale of the viewport."""
+    material = scene.luzespecular.results.false_colour
+    if material is None:
+        return
+    nodes = _group_of(material).nodes
+    logarithmic = scale.logarithmic
+    low, high = (math.log(scale.low), math.log(scale.high)) if logarithmic else (scale.low, scale.high)
+    nodes["Logarithmic"].outputs[0].default_value = float(logarithmic)
+    nodes["Low"].outputs[0].default_value = low
+    nodes["High"].outputs[0].default_value = high
+    elements = nodes["Scale"].color_ramp.elements
+    rgb = colours.srgb_to_linear(colours.scale_colours(scale.name, np.linspace(0.0, 1.0, _STOPS)))
+    for element, colour in zip(elements, rgb, strict=True):
+        element.color = (*colour, 1.0)
+
+
+def _meshes(scene: bpy.types.Scene):
+    return (object_.data for object_ in scene.objects if object_.type == "MESH")
+
+
+def _hide_from_camera(object_: bpy.types.Object, hidden: bool) -> None:
+    settings = object_.luzespecular
+    if hidden and object_.visible_camera:
+        object_.visible_camera, settings.off_camera_for_results = False, True
+    elif not hidden and settings.off_camera_for_results:
+        object_.visible_camera = True
+        settings.property_unset("off_camera_for_results")
+
+
+def _override(scene: bpy.types.Scene, material: bpy.types.Material) -> None:
+    results, view = scene.luzespecular.results, scene.view_settings
+    if not results.renders:
+        results.renders = True
+        results.view_transform_before, results.look_before = view.view_transform, view.look
+        results.exposure_before, results.gamma_before = view.exposure, view.gamma
+        for view_layer in scene.view_layers:
+            entry = results.overrides.add()
+            entry.name, entry.material = view_layer.name, view_layer.material_override
+    for view_layer in scene.view_layers:
+        view_layer.material_override = material
+    # Colours of the legend: no tone mapping.
+    view.view_transform, view.look, view.exposure, view.gamma = "Standard", "None", 0.0, 1.0
+
+
+def _restore(scene: bpy.types.Scene) -> None:
+    results, view = scene.luzespecular.results, scene.view_settings
+    if not results.renders:
+        return
+    before = {entry.name: entry.material for entry in results.overrides}
+    for view_layer in scene.view_layers:
+        view_layer.material_override = before.get(view_layer.name)
+    view.view_transform, view.look = results.view_transform_before, results.look_before
+    view.exposure, view.gamma = results.exposure_before, results.gamma_before
+    material = results.false_colour
+    results.overrides.clear()
+    for name in ("renders", "false_colour"):
+        results.property_unset(name)
+    if material is not None:
+        group = _group_of(material)
+        bpy.data.materials.remove(material)
+        if group.users == 0:
+            bpy.data.node_groups.remove(group)
+
+
+def _group_of(material: bpy.types.Material) -> bpy.types.NodeTree:
+    return material.node_tree.nodes["False Colour"].node_tree
+
+
+def _new_material(results: bpy.types.PropertyGroup) -> bpy.types.Material:
+    """Make the material: the group's colour as light that faces give off, and nothing where backs are culled."""
+    material = bpy.data.materials.new(NAME)
+    if material.node_tree is None:  # before Blender 5.0 a new material has no shader yet
+        material.use_nodes = True
+    results.false_colour = material
+    tree = material.node_tree
+    tree.nodes.clear()
+    group = _node(tree, "ShaderNodeGroup", "False Colour", -200, 0)
+    group.node_tree = _new_group()
+    emission = _node(tree, "ShaderNodeEmission", "Emission", 0, 0)
+    clear = _node(tree, "ShaderNodeBsdfTransparent", "Clear", 0, -120)
+    geometry = _node(tree, "ShaderNodeNewGeometry", "Geometry", -200, 300)
+    culls = _node(tree, "ShaderNodeMath", "Cull Backs", 0, 200)
+    culls.operation = "MULTIPLY"
+    mix = _node(tree, "ShaderNodeMixShader", "Mix", 200, 0)
+    output = _node(tree, "ShaderNodeOutputMaterial", "Output", 400, 0)
+    tree.links.new(group.outputs["Color"], emission.inputs["Color"])
+    tree.links.new(geometry.outputs["Backfacing"], culls.inputs[0])
+    tree.links.new(culls.outputs[0], mix.inputs[0])
+    tree.links.new(emission.outputs[0], mix.inputs[1])
+    tree.links.new(clear.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def _set_up(material: bpy.types.Material, culls: bool) -> None:
+    material.node_tree.nodes["Cull Backs"].inputs[1].default_value = float(culls)
+
+
+def _new_group() -> bpy.types.NodeTree:
+    """Make the node group: shown value -> place on the scale -> colour; grey where nothing was computed."""
+    tree = bpy.data.node_groups.new(NAME, "ShaderNodeTree")
+    for name, kind in (("Color", "NodeSocketColor"), ("Value", "NodeSocketFloat"), ("Computed", "NodeSocketFloat")):
+        tree.interface.new_socket(name, in_out="OUTPUT", socket_type=kind)
+    links = tree.links
+    shown = _node(tree, "ShaderNodeAttribute", "Shown", -1200, 0)
+    shown.attribute_name = writeback.SHOWN
+    low = _node(tree, "ShaderNodeValue", "Low", -1200, -200)
+    high = _node(tree, "ShaderNodeValue", "High", -1200, -300)
+    logarithmic = _node(tree, "ShaderNodeValue", "Logarithmic", -1200, 200)
+    value = shown.outputs["Fac"]
+    computed = _math(tree, "GREATER_THAN", value, 0.5 * _LEAST, -800, 300)
+    positive = _math(tree, "MAXIMUM", value, _LEAST, -1000, 100)
+    log = _math(tree, "LOGARITHM", positive, math.e, -800, 100)
+    # value + logarithmic · (log - value)
+    bent = _math(tree, "MULTIPLY", _math(tree, "SUBTRACT", log, value, -600, 100), logarithmic.outputs[0], -400, 100)
+    placed = _math(tree, "ADD", value, bent, -200, 100)
+    above = _math(tree, "SUBTRACT", placed, low.outputs[0], 0, 0)
+    span = _math(tree, "SUBTRACT", high.outputs[0], low.outputs[0], 0, -200)
+    position = _math(tree, "DIVIDE", above, span, 200, 0)
+    ramp = _node(tree, "ShaderNodeValToRGB", "Scale", 400, 0)
+    elements = ramp.color_ramp.elements
+    for stop in range(1, _STOPS - 1):
+        elements.new(stop / (_STOPS - 1))
+    facing = _node(tree, "ShaderNodeLayerWeight", "Facing", 200, 400)
+    shade = _math(tree, "MULTIPLY_ADD", facing.outputs["Facing"], -0.7 * _PLAIN_GREY, 400, 400, _PLAIN_GREY)
+    grey = _node(tree, "ShaderNodeCombineColor", "Grey", 600, 400)
+    for channel in grey.inputs:
+        links.new(shade, channel)
+    mix = _node(tree, "ShaderNodeMix", "Colour or Grey", 800, 0)
+    mix.data_type = "RGBA"
+    inputs = [socket for socket in mix.inputs if socket.type == "RGBA"]
+    result = next(socket for socket in mix.outputs if socket.type == "RGBA")
+    links.new(computed, mix.inputs[0])
+    links.new(grey.outputs[0], inputs[0])
+    links.new(ramp.outputs["Color"], inputs[1])
+    links.new(position, ramp.inputs[0])
+    output = _node(tree, "NodeGroupOutput", "Output", 1000, 0)
+    links.new(result, output.inputs["Color"])
+    links.new(value, output.inputs["Value"])
+    links.new(computed, output.inputs["Computed"])
+    return tree
+
+
+def _node(tree: bpy.types.NodeTree, kind: str, name: str, x: float, y: float) -> bpy.types.Node:
+    node = tree.nodes.new(kind)
+    node.name = node.label = name
+    node.location = (x, y)
+    return node
+
+
+def _math(tree: bpy.types.NodeTree, operation: str, first, second, x: float, y: float, third: float = 0.0):
+    """Add a Math node; inputs are sockets or numbers."""
+    node = tree.nodes.new("ShaderNodeMath")
+    node.operation, node.location = operation, (x, y)
+    for socket, source in zip(node.inputs, (first, second, third), strict=True):
+        if isinstance(source, bpy.types.NodeSocket):
+            tree.links.new(source, socket)
+        else:
+            socket.default_value = source
+    return node.outputs[0]

@@ -1,0 +1,104 @@
+"""Lines of equal illuminance on triangles whose corners have values, and where their labels stand. Pure NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True)
+class IsoLines:
+    """Pieces of lines of equal value.
+
+    Attributes
+    ----------
+    ends : (k, 2, 3) float
+        Both ends of each piece; one piece crosses one triangle.
+    values : (k,) float
+        The value that each runs along.
+    triangles : (k,) int
+        The triangle that each crosses.
+    """
+
+    ends: NDArray[np.float64]
+    values: NDArray[np.float64]
+    triangles: NDArray[np.intp]
+
+
+def trace(points: ArrayLike, values: ArrayLike, levels: Iterable[float]) -> IsoLines:
+    """Return the lines along which values that vary linearly over triangles have the given levels.
+
+    Parameters
+    ----------
+    points : (t, 3, 3) float
+        Corners of the triangles.
+    values : (t, 3) float
+        Values at the corners; triangles with NaN carry no lines.
+    levels : iterable of float
+        Values to follow.
+    """
+    points, values = np.asarray(points, float), np.asarray(values, float)
+    found = [_one_level(points, values, float(level)) for level in levels]
+    if not found:
+        return IsoLines(np.zeros((0, 2, 3)), np.zeros(0), np.zeros(0, np.intp))
+    return IsoLines(*(np.concatenate(part) for part in zip(*found, strict=True)))
+
+
+def _one_level(points: NDArray, values: NDArray, level: float) -> tuple[NDArray, NDArray, NDArray]:
+    above = values >= level
+    count = above.sum(axis=1)
+    rows = np.flatnonzero(((count == 1) | (count == 2)) & ~np.isnan(values).any(axis=1))
+    # The corner that stands alone on its side of the level: the line crosses the two edges that leave it.
+    lone = np.argmax(np.where((count[rows] == 1)[:, None], above[rows], ~above[rows]), axis=1)
+    ends = np.empty((len(rows), 2, 3))
+    for end, step in enumerate((1, 2)):
+        other = (lone + step) % 3
+        here, there = values[rows, lone], values[rows, other]
+        share = (level - here) / (there - here)
+        ends[:, end] = points[rows, lone] + share[:, None] * (points[rows, other] - points[rows, lone])
+    return ends, np.full(len(rows), level), rows
+
+
+def parse_levels(text: str) -> list[float]:
+    """Read levels as people write them: numbers divided by spaces, commas or semicolons, with ``.`` for decimals.
+
+    Raises
+    ------
+    ValueError
+        With the word that is no positive number.
+    """
+    levels = set()
+    for word in text.replace(";", " ").replace(",", " ").split():
+        try:
+            level = float(word)
+        except ValueError:
+            raise ValueError(word) from None
+        if not 0.0 < level < np.inf:
+            raise ValueError(word)
+        levels.add(level)
+    return sorted(levels)
+
+
+def label_edges(lines: IsoLines, spacing: float, most: int = 40) -> NDArray[np.intp]:
+    """Choose the pieces that carry labels: no two nearer than `spacing`, levels taking turns, at most `most`."""
+    middles = lines.ends.mean(axis=1)
+    chosen: list[int] = []
+    free = np.ones(len(middles), bool)
+    levels = list(np.unique(lines.values))
+    while levels and len(chosen) < most:
+        for level in list(levels):
+            candidates = np.flatnonzero(free & (lines.values == level))
+            if not len(candidates):
+                levels.remove(level)
+                continue
+            # The piece nearest to the middle of what is left of the level: away from the ends of its lines.
+            centre = np.median(middles[candidates], axis=0)
+            best = candidates[np.argmin(np.linalg.norm(middles[candidates] - centre, axis=1))]
+            chosen.append(int(best))
+            free &= np.linalg.norm(middles - middles[best], axis=1) >= spacing
+            if len(chosen) == most:
+                break
+    return np.array(sorted(chosen), np.intp)
