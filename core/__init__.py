@@ -5,7 +5,9 @@ from .availability import availability, default_daylight
 from .balance import Balance
 from .daylight import Daylight
 from .errors import Cancelled, LuzEspecularError, SceneError, TransferFileError
+from .flaws import Finding
 from .globe import Globe
+from .inspection import check
 from .materials import Material
 from .result import Result
 from .scene import Scene
@@ -34,6 +36,7 @@ __all__ = [
     "CIESky",
     "Cancelled",
     "Daylight",
+    "Finding",
     "Globe",
     "LuzEspecularError",
     "Material",
@@ -48,6 +51,7 @@ __all__ = [
     "UniformSky",
     "__version__",
     "availability",
+    "check",
     "declination",
     "default_daylight",
     "equation_of_time",

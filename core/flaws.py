@@ -2,71 +2,69 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from . import polygons
 from .scene import Surface
 
+ERROR, WARNING = "error", "warning"
+OF_MESHES = ("no area", "not flat", "turned over in a mesh")
+"""Kinds that are known, and told, as soon as a mesh is added."""
+
 _SAME_NORMAL = 1e-6
-_TOLD = 10
 _MOST_PAIRS = 5_000_000
 _MOST_CONVEX_SHEETS = 2_000
 _CLOSED_ENOUGH = 0.5
 _CHUNK = 20_000
 
 
-def find_flaws(surfaces: list[Surface], size: float, outlines, outline_sheet, sheet_surface, sheet_normal) -> list[str]:
-    """Say what is odd, in sentences that name the surfaces and the remedy.
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """One thing that is odd in a scene.
 
-    Parameters
+    Attributes
     ----------
-    surfaces : list of Surface
-    size : float
-        Diagonal of the scene [m]; what is smaller than a millionth of it counts as rounding.
-    outlines : (o, w, 3) float, padded
-    outline_sheet, sheet_surface : (o,) int, (s,) int
-    sheet_normal : (s, 3) float
-
-    Returns
-    -------
-    list of str
+    severity : "error" or "warning"
+        An error stops a solve, a warning goes with its result.
+    kind : str
+        What sort of thing it is, in two or three words, e.g. ``"gap"``.
+    surface : str
+        The surface to mend; empty where the whole scene is meant.
+    faces : (k,) int
+        Its faces concerned, by index as given to `Scene.add` (0 for a surface of one polygon).
+    message, remedy : str
+        What is odd, and what to do about it; ``str(finding)`` is both in one sentence.
+    others : dict of str to (k,) int
+        Further surfaces concerned and their faces.
     """
-    tolerance = 1e-6 * size
-    first = np.full(len(sheet_normal), -1)
-    first[outline_sheet[::-1]] = np.arange(len(outlines))[::-1]
-    offsets = np.einsum("sc,sc->s", sheet_normal, outlines[first, 0])
-    two_sided = np.array([surface.two_sided for surface in surfaces])[sheet_surface]
-    pairs = overlapping_outlines(outlines, sheet_normal[outline_sheet], offsets[outline_sheet], tolerance)
-    sheets = outline_sheet[pairs]
-    same_side = np.einsum("pc,pc->p", sheet_normal[sheets[:, 0]], sheet_normal[sheets[:, 1]]) > 0
-    meeting = same_side | two_sided[sheets].any(axis=1)  # one-sided faces back to back are a sheet with two sides
-    told = _overlap_sentences(surfaces, sheet_surface[sheets[meeting]])
-    if not two_sided.any() and looks_outward(outlines, outline_sheet, sheet_normal, offsets, tolerance):
-        told.append(
-            "All surfaces look outward and none sees another; if this is a room seen from inside, turn its normals "
-            "(reverse the order of the vertices)"
-        )
-    return told
+
+    severity: str
+    kind: str
+    surface: str
+    faces: np.ndarray
+    message: str
+    remedy: str
+    others: dict[str, np.ndarray]
+
+    def __str__(self) -> str:
+        return f"{self.message}; {self.remedy}"
 
 
-def _overlap_sentences(surfaces: list[Surface], pairs: np.ndarray) -> list[str]:
-    told = []
-    for one, two in np.unique(np.sort(pairs, axis=1), axis=0):
-        a, b = surfaces[one], surfaces[two]
-        if one == two:
-            told.append(f"Surface '{a.name}': some of its faces lie on one another; remove the doubles")
-        elif a.material == b.material:
-            told.append(f"Surfaces '{a.name}' and '{b.name}' lie on one another in one plane; remove what is doubled")
-        else:
-            told.append(
-                f"Surfaces '{a.name}' and '{b.name}' lie on one another in one plane with different materials, so "
-                "which of them light meets is not defined; remove one, or move them apart"
-            )
-    if len(told) > _TOLD:
-        more = len(told) - _TOLD
-        del told[_TOLD:]
-        told.append(f"{more} more pairs of surfaces lie on one another")
-    return told
+def warning(kind: str, concerned: dict[str, np.ndarray], message: str, remedy: str, severity: str = WARNING) -> Finding:
+    """Finding about the faces of some surfaces, of which the first is named first."""
+    name = next(iter(concerned), "")
+    others = {other: faces for other, faces in concerned.items() if other != name}
+    return Finding(severity, kind, name, concerned.get(name, np.zeros(0, np.int64)), message, remedy, others)
+
+
+def mesh_flaws(surface: Surface) -> list[Finding]:
+    """What a mesh had to be mended of when it was added, and faces that look to the wrong side."""
+    return [
+        warning(kind, {surface.name: faces}, f"Surface '{surface.name}': {said}", remedy)
+        for kind, (faces, said, remedy) in surface.flaws.items()
+    ]
 
 
 def overlapping_outlines(outlines, normals, offsets, tolerance: float) -> np.ndarray:

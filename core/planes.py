@@ -7,16 +7,12 @@ polygon.
 from __future__ import annotations
 
 import itertools
-import logging
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import polygons
-from .flaws import find_flaws
 from .scene import Scene
-
-logger = logging.getLogger(__name__)
 
 _SAME_NORMAL = 1e-7
 _JOIN_AT_MOST = 4000
@@ -43,8 +39,6 @@ class Planes:
         In-plane axes, along the sheet's longest edge.
     outlines, outline_sheet : (o, w, 3) float, padded, and (o,) int
         Convex polygons that block the view.
-    notes : tuple of str
-        What is odd: surfaces that lie on one another, a room turned inside out.
     """
 
     centre: np.ndarray
@@ -59,7 +53,6 @@ class Planes:
     sheet_axes: np.ndarray
     outlines: np.ndarray
     outline_sheet: np.ndarray
-    notes: tuple[str, ...]
 
 
 def find_planes(scene: Scene) -> Planes:
@@ -108,9 +101,6 @@ def find_planes(scene: Scene) -> Planes:
     padded, given_counts = polygons.pad([p[:c] for p, c in given])
     blocked, _ = polygons.pad(outlines)
     outline_sheet = np.array(outline_of)
-    notes = find_flaws(surfaces, size, blocked, outline_sheet, np.array(sheet_surface), np.array(sheet_normal))
-    for note in notes:
-        logger.warning("%s", note)
     return Planes(
         centre=centre,
         size=size,
@@ -124,7 +114,6 @@ def find_planes(scene: Scene) -> Planes:
         sheet_axes=_sheet_axes(np.array(sheet_normal), blocked, outline_sheet),
         outlines=blocked,
         outline_sheet=outline_sheet,
-        notes=tuple(notes),
     )
 
 

@@ -169,8 +169,8 @@ class Result:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is odd about the scene: surfaces that lie on one another, a room turned inside out."""
-        return self.transfer.geometry.planes.notes
+        """What the scene check warns of; the same with surfaces and faces in ``transfer.findings``."""
+        return tuple(str(finding) for finding in self.transfer.findings)
 
     def faces_of(self, name: str) -> np.ndarray:
         """(k,) int: faces of a surface.

@@ -37,8 +37,8 @@ class Surface:
         Vertices of each piece.
     source_faces : (m,) int
         Index of the given face that each piece is a part of.
-    notes : tuple of str
-        What was mended on the way in.
+    flaws : dict of str to (faces, message, remedy)
+        What was mended on the way in, and faces turned over, by the kind of the finding (see `flaws.OF_MESHES`).
     """
 
     name: str
@@ -47,7 +47,12 @@ class Surface:
     pieces: np.ndarray
     counts: np.ndarray
     source_faces: np.ndarray
-    notes: tuple[str, ...] = ()
+    flaws: dict[str, tuple[np.ndarray, str, str]] = field(default_factory=dict)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on its flaws."""
+        return tuple(f"{said}; {remedy}" for _, said, remedy in self.flaws.values())
 
 
 @dataclass
@@ -99,12 +104,12 @@ class Scene:
             )
         points = _vertices(name, vertices, faces is not None)
         if faces is None:
-            pieces, counts, source, notes = _polygon_pieces(name, points)
+            pieces, counts, source, flaws = _polygon_pieces(name, points)
         else:
-            pieces, counts, source, notes = _mesh_pieces(name, points, faces, bool(two_sided))
-        for note in notes:
+            pieces, counts, source, flaws = _mesh_pieces(name, points, faces, bool(two_sided))
+        surface = Surface(name, material, bool(two_sided), pieces, counts, source, flaws)
+        for note in surface.notes:
             logger.warning("Surface '%s': %s", name, note)
-        surface = Surface(name, material, bool(two_sided), pieces, counts, source, tuple(notes))
         self.surfaces[name] = surface
         return surface
 
@@ -167,21 +172,23 @@ def _flat_pieces(points: np.ndarray, unit: np.ndarray):
             if distance[nearest] <= 1e-6 * np.ptp(points, axis=0).max():
                 part[i] = points[nearest]
     pieces, counts = polygons.pad(lifted)
-    return pieces, counts, np.zeros(len(lifted), np.int64), []
+    return pieces, counts, np.zeros(len(lifted), np.int64), {}
 
 
 def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
     loops_by_length = _faces_by_length(name, faces, len(points))
-    pieces, counts, source, notes, kept = [], [], [], [], []
-    dropped = bent = 0
+    pieces, counts, source, kept, kept_rows = [], [], [], [], []
+    dropped: list[np.ndarray] = []
+    bent: list[np.ndarray] = []
     for length, (rows, index) in sorted(loops_by_length.items()):
         corners = points[index]
         normals = polygons.newell_normal(corners)
         size = np.ptp(corners, axis=1).max(axis=1)
         twice_area = np.linalg.norm(normals, axis=1)
         sound = twice_area > 1e-14 * np.maximum(size, 1e-300) ** 2
-        dropped += int((~sound).sum())
+        dropped.append(rows[~sound])
         kept.append(index[sound])
+        kept_rows.append(rows[sound])
         rows, corners, size = rows[sound], corners[sound], size[sound]
         if not len(rows):
             continue
@@ -199,7 +206,7 @@ def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
         pieces.append(corners[convex])
         counts.append(np.full(int(convex.sum()), length))
         source.append(rows[convex])
-        bent += int((~flat).sum())
+        bent.append(rows[~flat])
         for row, polygon, normal in zip(rows[~convex], corners[~convex], unit[~convex], strict=True):
             loop = (polygon - polygon[0]) @ polygons.plane_basis(normal).T
             if polygons.crosses_itself(loop):
@@ -210,30 +217,67 @@ def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
             pieces.append(triangles)
             counts.append(np.full(len(triangles), 3))
             source.append(np.full(len(triangles), row))
-    if dropped:
-        notes.append(f"{dropped} faces without area left out")
-    if bent:
-        notes.append(f"{bent} faces that are not flat cut into triangles")
-    turned = 0 if two_sided else _turned_edges(kept, len(points))
-    if turned:
-        notes.append(
-            f"its faces look to different sides: across {turned} edges neighbours are turned over; "
-            "recalculate its normals"
-        )
+    flaws = {}
     total = sum(len(p) for p in pieces)
     if not total:
         raise SceneError(f"Surface '{name}' has no face with an area; mend or remove it")
-    return polygons.joined([p for p in pieces if len(p)]), np.concatenate(counts), np.concatenate(source), notes
+    without_area, warped = np.concatenate(dropped), np.concatenate([*bent, np.zeros(0, np.int64)])
+    if len(without_area):
+        said = f"{len(without_area)} faces without area left out"
+        flaws["no area"] = (without_area, said, "merge their vertices or remove them")
+    if len(warped):
+        said = f"{len(warped)} faces that are not flat cut into triangles"
+        flaws["not flat"] = (warped, said, "flatten them, or cut them as you want them")
+    edges, turned = (0, without_area) if two_sided else _turned_faces(kept, kept_rows, len(points))
+    if edges:
+        said = f"its faces look to different sides: across {edges} edges neighbours are turned over"
+        flaws["turned over in a mesh"] = (turned, said, "recalculate its normals")
+    return polygons.joined([p for p in pieces if len(p)]), np.concatenate(counts), np.concatenate(source), flaws
 
 
-def _turned_edges(loops: list[np.ndarray], vertex_count: int) -> int:
-    """Edges of exactly two faces that both walk the same way; between faces that look to one side they walk both."""
+def _turned_faces(loops: list[np.ndarray], rows: list[np.ndarray], vertex_count: int) -> tuple[int, np.ndarray]:
+    """Edges of exactly two faces that both walk the same way, and the faces to turn over.
+
+    Between faces that look to one side both ways are walked. Of each connected part of the mesh the fewer are to turn.
+    """
     start = np.concatenate([index.reshape(-1) for index in loops]).astype(np.int64)
     end = np.concatenate([np.roll(index, -1, axis=1).reshape(-1) for index in loops]).astype(np.int64)
+    face = np.concatenate([np.repeat(of, index.shape[1]) for of, index in zip(rows, loops, strict=True)])
+    real = start != end
+    start, end, face = start[real], end[real], face[real]
     edge = np.minimum(start, end) * vertex_count + np.maximum(start, end)
-    _, of, faces = np.unique(edge[start != end], return_inverse=True, return_counts=True)
-    walked = np.bincount(of.reshape(-1), weights=np.sign(end - start)[start != end])
-    return int(((faces == 2) & (np.abs(walked) == 2)).sum())
+    order = np.argsort(edge, kind="stable")
+    starts = np.flatnonzero(np.diff(edge[order], prepend=-1))
+    of_two = starts[np.diff(np.append(starts, len(order))) == 2]
+    one, two = order[of_two], order[of_two + 1]
+    same_way = (start[one] == start[two]) & (face[one] != face[two])
+    if not same_way.any():
+        return 0, np.zeros(0, np.int64)
+    return int(same_way.sum()), _fewer_turned(face[one], face[two], same_way)
+
+
+def _fewer_turned(one: np.ndarray, two: np.ndarray, turned: np.ndarray) -> np.ndarray:
+    """Faces to turn over, so that neighbours agree: the fewer ones of each connected part."""
+    neighbours: dict[int, list[tuple[int, bool]]] = {}
+    for a, b, over in zip(one.tolist(), two.tolist(), turned.tolist(), strict=True):
+        neighbours.setdefault(a, []).append((b, over))
+        neighbours.setdefault(b, []).append((a, over))
+    side: dict[int, bool] = {}
+    found: list[int] = []
+    for first in neighbours:
+        if first in side:
+            continue
+        side[first] = False
+        part = [first]
+        for here in part:  # grows while it is walked
+            for other, over in neighbours[here]:
+                if other not in side:
+                    side[other] = side[here] != over
+                    part.append(other)
+        over_there = [member for member in part if side[member]]
+        here_too = [member for member in part if not side[member]]
+        found += over_there if len(over_there) <= len(here_too) else here_too
+    return np.array(sorted(found), np.int64)
 
 
 def _turns_once(edge: np.ndarray, unit: np.ndarray) -> np.ndarray:

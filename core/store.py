@@ -19,6 +19,7 @@ from .fingerprint import Fingerprint
 from .form_factors import Conservation, Exchange
 from .geometry import Geometry, make_geometry
 from .globe import Globe
+from .inspection import inspect
 from .nodes import Nodes, Weights
 from .options import Options
 from .planes import find_planes
@@ -139,7 +140,8 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
     """A transfer from the scene's geometry and the file's arrays, each of which must fit."""
     times = float(header["times"])
     globe = Globe(int(header["bands"]))
-    geometry = make_geometry(scene, find_planes(scene), globe, options.max_area, times)
+    planes = find_planes(scene)
+    geometry = make_geometry(scene, planes, globe, options.max_area, times)
     if header["sizes"] != _sizes(geometry):
         raise ValueError("the scene is cut otherwise now")
     lattice = Nodes.of(geometry.fracture, geometry.lattices)
@@ -211,4 +213,5 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
         threads=threads,
         fingerprint=known,
         stages=tuple(Stage(**stage) for stage in header["stages"]),
+        findings=inspect(scene, planes),
     )

@@ -14,9 +14,11 @@ from .errors import SceneError, TransferFileError
 from .estimate import Trial, make_trial
 from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
 from .fingerprint import Fingerprint
+from .flaws import Finding
 from .form_factors import Conservation, Exchange, gather_nodes, patch_means
 from .geometry import Geometry, make_geometry
 from .globe import Globe
+from .inspection import inspect, refuse
 from .nodes import Nodes
 from .options import Options, checked_memory, checked_scene, checked_threads
 from .planes import find_planes
@@ -66,6 +68,8 @@ class Transfer:
     fingerprint : Fingerprint
         What scene and options it holds for.
     stages : tuple of Stage
+    findings : tuple of Finding
+        What the scene check warns of.
     """
 
     geometry: Geometry
@@ -87,6 +91,7 @@ class Transfer:
     threads: int
     fingerprint: Fingerprint
     stages: tuple[Stage, ...] = field(default=())
+    findings: tuple[Finding, ...] = field(default=())
 
     @property
     def patch_factors(self) -> np.ndarray:
@@ -168,6 +173,7 @@ class Transfer:
             geometry=geometry,
             conservation=replace(self.conservation, kept=geometry.areas_kept),
             stages=(*(stage for stage in self.stages if stage.skipped and stage.name != _LOOKING), note),
+            findings=inspect(scene, geometry.planes),
         )
 
     def save(self, path) -> Path:
@@ -358,6 +364,9 @@ def _prepared(
     globe = Globe.cut_at_horizon(bands)  # a parcel is sky or ground, never both
     with recorder.stage("planes", 0.0):
         planes = find_planes(scene)
+    with recorder.stage("scene check", 0.005):
+        findings = inspect(scene, planes)
+        refuse(findings)
     with recorder.stage("fracture", 0.01):
         geometry = make_geometry(scene, planes, globe, options.max_area, times)
     limits = ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines))
@@ -399,6 +408,7 @@ def _prepared(
         threads=threads,
         fingerprint=Fingerprint.of(scene, options),
         stages=tuple(recorder.stages),
+        findings=findings,
     )
 
 

@@ -174,7 +174,7 @@ def show(
     scene: bpy.types.Scene, study: Study, result: luz.Result, readings: Sequence[work_planes.Reading] = ()
 ) -> tuple[Notice, ...]:
     """Write results to meshes and tables and colour them, whatever the viewports show; see `finish`."""
-    notices = (*study.notices, *_remarks_of_solver(study, result))
+    notices = (*study.notices, *_remarks_of_solver(result))
     _fill_table(scene, study, result, notices)
     display.write(scene, study.export, result, readings)
     return notices
@@ -190,12 +190,11 @@ def is_current(context: bpy.types.Context, study: Study) -> bool:
         return export.current_fingerprint(bpy.context) == study.export.fingerprint
 
 
-def _remarks_of_solver(study: Study, result: luz.Result) -> list[Notice]:
-    texts = [solver_message(note) for note in result.notes]
-    for surface in study.export.scene.surfaces.values():
-        for note in surface.notes:
-            texts.append(rpt_("Surface '{name}': {remark}").format(name=surface.name, remark=solver_message(note)))
-    return [Notice("WARNING", text) for text in texts]
+def _remarks_of_solver(result: luz.Result) -> list[Notice]:
+    return [
+        Notice("WARNING", f"{solver_message(finding.message)}; {solver_message(finding.remedy)}")
+        for finding in result.transfer.findings
+    ]
 
 
 def _part(progress: Progress, begin: float, end: float) -> Progress:

@@ -6,6 +6,9 @@ import string
 from pathlib import Path
 
 import pytest
+from planted_faults import FAULTS
+
+import luzespecular
 
 ADDON = Path(__file__).resolve().parents[2] / "luzespecular_addon"
 TEXT_KEYWORDS = {"name", "description", "text"}
@@ -120,6 +123,13 @@ def solver_messages():
             if isinstance(node, ast.Call) and _called(node) in ("SceneError", "Cancelled", "append") and node.args:
                 parts = node.args[0].values if isinstance(node.args[0], ast.JoinedStr) else [node.args[0]]
                 yield "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in parts)
+    for room in ("flaws", "inspection", "looks", "scene"):  # what the scene check finds is put together there
+        for node in ast.walk(ast.parse((ADDON.parent / "core" / f"{room}.py").read_text(encoding="utf-8"))):
+            if isinstance(node, ast.JoinedStr):
+                said = "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in node.values)
+                yield from (said, f"Surface '{{}}': {said}")
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield node.value
 
 
 def test_the_solver_still_says_what_is_translated(addon):
@@ -150,6 +160,20 @@ def test_messages_of_the_solver_are_translated(addon, monkeypatch):
         with pytest.raises(luz.SceneError) as caught:
             refused()
         assert translations.solver_message(caught.value) == (expected or str(caught.value))
+
+
+def test_findings_of_the_scene_check_are_translated(addon, monkeypatch):
+    translations = addon.translations
+    monkeypatch.setattr(translations, "rpt_", translations.SOLVER.__getitem__)
+    foreign = [
+        said
+        for fault, (make, *_) in FAULTS.items()
+        if fault != "nothing"
+        for finding in luzespecular.check(make())
+        for said in (finding.message, finding.remedy)
+        if translations.solver_message(said) == said
+    ]
+    assert not foreign
 
 
 def test_names_of_properties_have_a_context_of_their_own(addon, bpy):

@@ -95,7 +95,7 @@ def test_faces_that_are_not_flat_are_cut_and_said(caplog):
     with caplog.at_level(logging.WARNING, logger="luzespecular"):
         surface = Scene().add("bent", corners, BLACK, faces=[[0, 1, 2, 3]])
     assert surface.counts.tolist() == [3, 3] and surface.source_faces.tolist() == [0, 0]
-    assert surface.notes == ("1 faces that are not flat cut into triangles",)
+    assert surface.notes[0].startswith("1 faces that are not flat cut into triangles; ")
     assert "Surface 'bent': 1 faces that are not flat" in caplog.text
 
 
@@ -104,7 +104,7 @@ def test_faces_without_area_are_left_out_and_said(caplog):
     with caplog.at_level(logging.WARNING, logger="luzespecular"):
         surface = Scene().add("mesh", corners, BLACK, faces=[[0, 1, 4], [0, 1, 2, 3], [1, 4, 5], [0, 0, 0, 0]])
     assert surface.source_faces.tolist() == [1]
-    assert surface.notes == ("3 faces without area left out",)
+    assert surface.notes[0].startswith("3 faces without area left out; ")
     assert "Surface 'mesh': 3 faces without area" in caplog.text
 
 

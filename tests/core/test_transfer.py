@@ -209,7 +209,7 @@ def test_a_callback_that_answers_nothing_goes_on():
 
 def test_stages_are_recorded():
     stages = prepare_coarse(room()).stages
-    assert [s.name for s in stages] == ["planes", "fracture", "visibility and form factors"]
+    assert [s.name for s in stages] == ["planes", "scene check", "fracture", "visibility and form factors"]
     assert all(s.seconds >= 0 and s.skipped == "" for s in stages)
     assert prepare_coarse(box(BLACK)).stages[-1].skipped
 

@@ -61,7 +61,6 @@ TEXTS = {
         "Instâncias e objetos que compartilham uma malha têm resultados só nas faces finas: {names}"
     ),
     "Material '{name}': {remark}": "Material '{name}': {remark}",
-    "Surface '{name}': {remark}": "Superfície '{name}': {remark}",
     "Material '{name}': {error}. See Properties > Material > LuzEspecular": (
         "Material '{name}': {error}. Veja Propriedades > Material > LuzEspecular"
     ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 STAGES = {
     "planes": "planos",
+    "scene check": "verificação da cena",
     "fracture": "fracionamento",
     "visibility and form factors": "visibilidade e fatores de forma",
     "specular chains": "cadeias especulares",
@@ -83,25 +84,110 @@ SOLVER = {
         "A luz se multiplica sem fim: uma cena fechada de refletância difusa 1 não tem regime permanente; "
         "reduza as refletâncias abaixo de 1"
     ),
-    "Surface '{name}': some of its faces lie on one another; remove the doubles": (
-        "Superfície '{name}': algumas de suas faces estão umas sobre as outras; retire as repetidas"
-    ),
-    "Surfaces '{one}' and '{two}' lie on one another in one plane; remove what is doubled": (
-        "As superfícies '{one}' e '{two}' estão uma sobre a outra no mesmo plano; retire o que se repete"
-    ),
-    "Surfaces '{one}' and '{two}' lie on one another in one plane with different materials, so "
-    "which of them light meets is not defined; remove one, or move them apart": (
-        "As superfícies '{one}' e '{two}' estão uma sobre a outra no mesmo plano, com materiais diferentes, e não se "
-        "define qual delas a luz encontra; retire uma, ou afaste-as"
-    ),
-    "{count} more pairs of surfaces lie on one another": ("Mais {count} pares de superfícies estão uma sobre a outra"),
-    "All surfaces look outward and none sees another; if this is a room seen from inside, turn its normals "
-    "(reverse the order of the vertices)": (
-        "Todas as superfícies olham para fora e nenhuma vê outra; se este é um ambiente visto de dentro, vire suas "
-        "normais (inverta a ordem dos vértices)"
-    ),
-    "its faces look to different sides: across {count} edges neighbours are turned over; recalculate its normals": (
-        "suas faces olham para lados diferentes: em {count} arestas as vizinhas estão viradas; recalcule as normais"
-    ),
     "Cancelled during '{stage}'": "Cancelado durante '{stage}'",
+    # what the scene check finds: messages and remedies, each by itself
+    "Surface '{name}': some of its faces lie on one another": (
+        "Superfície '{name}': algumas de suas faces estão umas sobre as outras"
+    ),
+    "remove the doubles": "retire as repetidas",
+    "Surfaces '{one}' and '{two}' lie on one another in one plane": (
+        "As superfícies '{one}' e '{two}' estão uma sobre a outra no mesmo plano"
+    ),
+    "remove what is doubled": "retire o que se repete",
+    "Surfaces '{one}' and '{two}' lie on one another in one plane with different materials, so "
+    "which of them light meets is not defined": (
+        "As superfícies '{one}' e '{two}' estão uma sobre a outra no mesmo plano, com materiais diferentes, e não se "
+        "define qual delas a luz encontra"
+    ),
+    "remove one, or move them apart": "retire uma, ou afaste-as",
+    "{count} more pairs of surfaces lie on one another": "Mais {count} pares de superfícies estão uma sobre a outra",
+    "All surfaces look outward and none sees another": "Todas as superfícies olham para fora e nenhuma vê outra",
+    "if this is a room seen from inside, turn its normals (reverse the order of the vertices)": (
+        "se este é um ambiente visto de dentro, vire suas normais (inverta a ordem dos vértices)"
+    ),
+    "Surface '{name}': its faces look to different sides: across {count} edges neighbours are turned over": (
+        "Superfície '{name}': suas faces olham para lados diferentes: em {count} arestas as vizinhas estão viradas"
+    ),
+    "recalculate its normals": "recalcule as normais",
+    "Surface '{name}': {count} faces without area left out": (
+        "Superfície '{name}': {count} faces sem área deixadas de fora"
+    ),
+    "merge their vertices or remove them": "una seus vértices ou retire-as",
+    "Surface '{name}': {count} faces that are not flat cut into triangles": (
+        "Superfície '{name}': {count} faces que não são planas divididas em triângulos"
+    ),
+    "flatten them, or cut them as you want them": "aplaine-as, ou divida-as como quiser",
+    "Surfaces '{one}' and '{two}' lie side by side in one plane and look to opposite sides": (
+        "As superfícies '{one}' e '{two}' estão lado a lado no mesmo plano e olham para lados opostos"
+    ),
+    "turn the normals of one of them": "vire as normais de uma delas",
+    "Surface '{name}' has its back to {others} and its front sees nothing": (
+        "A superfície '{name}' está de costas para {others} e sua frente não vê nada"
+    ),
+    "turn its normals (reverse the order of the vertices), or make it two-sided": (
+        "vire suas normais (inverta a ordem dos vértices), ou dê-lhe dois lados"
+    ),
+    "Surface '{name}' is seen from behind by {others}, where it is black: it has one side only": (
+        "A superfície '{name}' é vista por trás por {others}, onde é preta: só tem um lado"
+    ),
+    "turn its normals, make it two-sided, or give it a second surface behind": (
+        "vire suas normais, dê-lhe dois lados, ou ponha uma segunda superfície atrás"
+    ),
+    "Between '{one}' and '{two}' is a gap up to {width} mm wide and {length} m long, through which light leaks": (
+        "Entre '{one}' e '{two}' há uma fresta de até {width} mm de largura e {length} m de comprimento, por onde vaza "
+        "luz"
+    ),
+    "Within '{name}' is a gap up to {width} mm wide and {length} m long, through which light leaks": (
+        "Em '{name}' há uma fresta de até {width} mm de largura e {length} m de comprimento, por onde vaza luz"
+    ),
+    "move their edges together, or merge their vertices": "junte suas arestas, ou una seus vértices",
+    "{count} more pairs of surfaces have gaps between them": "Mais {count} pares de superfícies têm frestas entre si",
+    "Surface '{name}' has {count} faces that are tiny or thinner than a hair": (
+        "A superfície '{name}' tem {count} faces minúsculas ou mais finas que um cabelo"
+    ),
+    "Surface '{name}' has {count} % of all polygons, and {share} % of the area": (
+        "A superfície '{name}' tem {count} % de todos os polígonos, e {share} % da área"
+    ),
+    "simplify its mesh: it takes much time and gives little light": (
+        "simplifique sua malha: ela toma muito tempo e dá pouca luz"
+    ),
+    "The scene is {size} m across and its surfaces mostly {length} m long": (
+        "A cena tem {size} m de ponta a ponta, e suas superfícies em geral {length} m de comprimento"
+    ),
+    "if it was drawn in {unit}, scale it by {factor}": "se foi desenhada em {unit}, mude sua escala por {factor}",
+    "The scene is {size} mm across": "A cena tem {size} mm de ponta a ponta",
+    "if it was drawn in another unit, scale it to metres": "se foi desenhada em outra unidade, converta-a em metros",
+    "The scene lies {distance} m from the origin, where coordinates have few digits left": (
+        "A cena está a {distance} m da origem, onde restam poucos dígitos às coordenadas"
+    ),
+    "move it to the origin": "mova-a para a origem",
+    "No light comes to {surfaces}: they enclose a space without an opening or a luminous surface": (
+        "Nenhuma luz chega a {surfaces}: fecham um espaço sem abertura nem superfície luminosa"
+    ),
+    "open a window, or give a surface an exitance": "abra uma janela, ou dê exitância a uma superfície",
+    "Surface '{name}' is black: its material has no settings": (
+        "A superfície '{name}' é preta: seu material não tem ajustes"
+    ),
+    "give it a reflectance, or leave it if it is to swallow all light": (
+        "dê-lhe uma refletância, ou deixe-a assim se deve engolir toda a luz"
+    ),
+    "Surface '{name}' reflects {share} % of the light": "A superfície '{name}' reflete {share} % da luz",
+    "white paint reflects some 85 %, a good mirror 95 %: check its material": (
+        "tinta branca reflete uns 85 %, um bom espelho 95 %: verifique seu material"
+    ),
+    "Between {surfaces} a look is mirrored {mean} times on average and up to {most} times, so that looking takes some "
+    "{factor} times as long as without mirrors": (
+        "Entre {surfaces} um olhar é espelhado {mean} vezes em média e até {most} vezes, de modo que olhar leva umas "
+        "{factor} vezes o tempo sem espelhos"
+    ),
+    "lower their reflectances, turn them a little, or raise specular_cutoff": (
+        "reduza suas refletâncias, ou gire-os um pouco"
+    ),
+    "Between {surfaces} light is mirrored without end: they enclose a space and absorb nothing": (
+        "Entre {surfaces} a luz é espelhada sem fim: fecham um espaço e nada absorvem"
+    ),
+    "Between {surfaces} light is reflected without end: they enclose a space and absorb nothing": (
+        "Entre {surfaces} a luz é refletida sem fim: fecham um espaço e nada absorvem"
+    ),
+    "lower their reflectances below 1, or open the space": "reduza suas refletâncias abaixo de 1, ou abra o espaço",
 }

@@ -1,0 +1,118 @@
+"""The scene check: planted faults are found and named with their faces; clean scenes stay without a word."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import UNIFORM, prepare_coarse
+from planted_faults import FAULTS, GREY, moved, rectangle, room, solid, turned
+
+import luzespecular as luz
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.parametrize("fault", list(FAULTS))
+def test_a_planted_fault_is_found(fault):
+    make, kind, concerned = FAULTS[fault]
+    findings = luz.check(make())
+    found = [f for f in findings if f.kind == kind and set(concerned) <= {f.surface, *f.others}]
+    assert found, [str(f) for f in findings]
+    for name, faces in concerned.items():
+        listed = found[0].faces if found[0].surface == name else found[0].others[name]
+        assert faces is None or listed.tolist() == faces, name
+        assert f"'{name}'" in str(found[0]) or len(found[0].others) > 1
+    for finding in findings:
+        assert finding.severity == ("error" if kind.startswith("endless") or kind == "empty" else "warning") or (
+            finding.kind != kind
+        )
+        assert finding.message and finding.remedy and str(finding) == f"{finding.message}; {finding.remedy}"
+
+
+def example(name):
+    path = ROOT / name
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def clean_scenes():
+    shelf = example("examples/light_shelf/room.py")
+    for variant in shelf.VARIANTS:
+        yield f"light shelf {variant}", shelf.scene(variant)
+    pipe = example("examples/mirror_light_pipe.py")
+    for ratio in (1, 2, 4):
+        yield f"pipe {ratio}", pipe.pipe(ratio * pipe.WIDTH)
+    glazed = example("examples/glazed_window.py")
+    yield "open window", glazed.room(False)
+    yield "glazed window", glazed.room(True)
+    yield "factors", example("examples/daylight_factor_grid.py").room()
+    scenes = example("benchmarks/scenes.py")
+    for name in scenes.NAMES:
+        if name != "white_box":  # of reflectance 0.99, which is told
+            yield name, scenes.load(name).solver_scene()
+
+
+def test_clean_scenes_have_no_findings():
+    told = {name: [str(f) for f in luz.check(scene)] for name, scene in clean_scenes()}
+    assert len(told) > 15
+    assert not {name: found for name, found in told.items() if found}
+
+
+def test_what_is_drawn_well_is_not_blamed():
+    scene = room()
+    for name, (origin, size) in {
+        "neighbour": ([-5, 20, 0], [12, 8, 15]),
+        "table": ([1, 1, 0.7], [1.2, 0.8, 0.03]),
+        "leg": ([1.2, 1.2, 0], [0.05, 0.05, 0.72]),
+        "bookcase": ([3.7, 0.0, 0.0], [0.3, 1, 2]),
+    }.items():
+        vertices, faces = solid(origin, size)
+        scene.add(name, vertices, GREY, faces=faces)
+    scene.add("sheet", rectangle((0, 1), (2, 3), 1.0), GREY)
+    scene.add("sheet from below", rectangle((0, 1), (2, 3), 1.0)[::-1], GREY)
+    scene.add("poster", [[1e-3, 1, 1], [1e-3, 2, 1], [1e-3, 2, 2], [1e-3, 1, 2]], GREY)
+    scene.add("curtain", [[2, 2.9, 0.5], [3, 2.9, 0.5], [3, 2.9, 2], [2, 2.9, 2]], GREY, two_sided=True)
+    assert [str(f) for f in luz.check(scene)] == []
+
+
+def test_how_wide_a_gap_is():
+    (finding,) = (f for f in luz.check(room(moved("ceiling", (0, 0, 5e-3)))) if "'west'" in f.message)
+    assert "5 mm wide and 3 m long" in finding.message
+    covered = room(
+        {
+            **moved("west", (0, 0, 5e-3)),
+            "skirting": np.array([[0.01, 0, 0], [0.01, 3, 0], [0.01, 3, 0.1], [0.01, 0, 0.1]]),
+        }
+    )
+    assert not [f for f in luz.check(covered) if f.kind == "gap" and "floor" in (f.surface, *f.others)]
+
+
+@pytest.mark.parametrize("scale", [1e-2, 1.0, 20.0])
+@pytest.mark.parametrize("shift", [0.0, 1e5])
+def test_what_is_found_depends_on_neither_scale_nor_place(scale, shift):
+    for fault in ("a wall turned over", "a wall 1 mm above the floor", "a carpet in the floor's plane", "no window"):
+        make, kind, _ = FAULTS[fault]
+        scene = luz.Scene()
+        for surface in make().surfaces.values():
+            scene.add(surface.name, surface.pieces[0] * scale + shift, surface.material)
+        assert [f.kind for f in luz.check(scene) if f.kind != "unit"] == [f.kind for f in luz.check(make())]
+        assert kind in {f.kind for f in luz.check(scene)}
+
+
+def test_warnings_go_with_the_result_and_errors_stop(caplog):
+    scene = room(turned("west"))
+    notes = prepare_coarse(scene, elements=40, bands=8).solve(UNIFORM).notes
+    assert notes == tuple(str(f) for f in luz.check(scene)) and "'west' has its back to" in notes[0]
+    assert notes[0] in caplog.text
+    with pytest.raises(luz.SceneError, match="mirrored without end"):
+        luz.prepare(FAULTS["a closed box of perfect mirrors"][0]())
+
+
+def test_what_is_no_scene():
+    with pytest.raises(luz.SceneError, match="check needs a luzespecular"):
+        luz.check([])
