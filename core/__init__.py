@@ -1,6 +1,7 @@
 """LuzEspecular: daylight illuminance, mirrors and glass included, by the Spherical Vector Model."""
 
 from . import solve as _solve  # noqa: F401 - before the function of this name, which a later import would hide
+from .annual import Annual
 from .availability import availability, default_daylight
 from .balance import Balance
 from .daylight import Daylight
@@ -9,6 +10,7 @@ from .flaws import Finding
 from .globe import Globe
 from .inspection import check
 from .materials import Material
+from .preparation import load, prepare
 from .result import Result
 from .scene import Scene
 from .sky import CIESky, MeasuredSky, PerezSky, UniformSky
@@ -21,7 +23,7 @@ from .sun import (
     sun_position_solar,
     sunrise_sunset,
 )
-from .transfer import Transfer, load, prepare
+from .transfer import Transfer
 
 __version__ = "0.1.0"
 
@@ -32,6 +34,7 @@ def solve(scene: Scene, light: Daylight, **prepare_options) -> Result:
 
 
 __all__ = [
+    "Annual",
     "Balance",
     "CIESky",
     "Cancelled",

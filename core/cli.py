@@ -21,11 +21,11 @@ from .availability import default_daylight
 from .balance import Balance
 from .daylight import Daylight
 from .errors import LuzEspecularError, SceneError
+from .preparation import prepare
 from .result import Result
 from .sky_cie import CIESky
 from .sun import Sun
 from .terminal import Progress, clock, hours_of_day, iso_date, print_statistics
-from .transfer import prepare
 
 _AVAILABLE_SKIES = ("clear", "intermediate", "overcast")
 

@@ -255,7 +255,7 @@ class Conservation:
             lost += rows.sky_specular.sum(axis=1, dtype=float)
         lost = nodes.weights.apply(lost)
         weights = nodes.weights
-        share = np.bincount(weights.node, weights=weights.weight * kept[weights.rows], minlength=len(nodes.points))
+        share = weights.gathered(kept, len(nodes.points))
         landed, seen = np.zeros(geometry.targets.patches.count), np.zeros(len(share))
         for first in range(0, len(share), _ROWS):
             some = rows.form_factors[first : first + _ROWS].astype(float)

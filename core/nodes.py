@@ -74,6 +74,14 @@ class Weights:
             return np.bincount(self.rows, weights=self.weight * values[self.node], minlength=count)
         return np.stack([self.apply(column) for column in values.T], axis=1)
 
+    def rows_of(self, some: slice) -> np.ndarray:
+        """(n,) int: row of each entry of some rows, from 0."""
+        return np.repeat(np.arange(some.stop - some.start), np.diff(self.start[some.start : some.stop + 1]))
+
+    def gathered(self, values: np.ndarray, nodes: int) -> np.ndarray:
+        """(m,) float: the other way round, sums at the nodes of elements' values ``(e,)``."""
+        return np.bincount(self.node, weights=self.weight * values[self.rows], minlength=nodes)
+
     def replaced(self, element, node, weight) -> Weights:
         """With other entries for some elements."""
         count = len(self.start) - 1

@@ -63,14 +63,46 @@ def until_settled(
     scale = float(np.abs(initial).mean())
     if not len(initial) or scale == 0 or not reflectance.any():
         return initial.copy()
+    gain = _bounded_gain(factors, reflectance)
+    # an error e of the residual grows to at most e / (1 − gain) in the illuminance
+    return _gmres(lambda e: e - factors @ (reflectance * e), initial, tolerance * (1 - gain), checkpoint)
+
+
+def all_settled(exchange, reflectance: np.ndarray, initial: np.ndarray) -> np.ndarray:
+    """Illuminance after all diffuse reflections, for many kinds of initial light at once, by elimination.
+
+    Parameters
+    ----------
+    exchange : Exchange
+    reflectance : (p,) float
+    initial : (p, c) float32
+
+    Returns
+    -------
+    (p, c) float32
+
+    Raises
+    ------
+    SceneError
+        Where light multiplies without end.
+    """
+    _bounded_gain(exchange, reflectance)
+    matrix = exchange.factors.astype(np.float32)
+    matrix += np.outer(exchange.spread, exchange.missing).astype(np.float32)
+    matrix *= -reflectance.astype(np.float32)
+    matrix[np.diag_indices_from(matrix)] += 1.0
+    return np.linalg.solve(matrix, initial)
+
+
+def _bounded_gain(factors, reflectance) -> float:
+    """`largest_gain`, where light does not multiply without end; else SceneError."""
     gain = largest_gain(factors, reflectance)
     if gain >= _UNBOUNDED:
         raise SceneError(
             "Light multiplies without end: a closed scene of diffuse reflectance 1 has no steady state; "
             "lower the reflectances below 1"
         )
-    # an error e of the residual grows to at most e / (1 − gain) in the illuminance
-    return _gmres(lambda e: e - factors @ (reflectance * e), initial, tolerance * (1 - gain), checkpoint)
+    return gain
 
 
 def largest_gain(factors, reflectance) -> float:

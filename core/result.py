@@ -212,7 +212,7 @@ class Result:
         SceneError
             Where shapes differ, or a value is not finite, or a normal is zero.
         """
-        place, normal = _checked_points(points, normals)
+        place, normal = checked_points(points, normals)
         geometry, transfer = self.transfer.geometry, self.transfer
         place = place - geometry.planes.centre
         out = np.zeros(len(place))
@@ -220,7 +220,7 @@ class Result:
         exitance = self.field.patch_emitted + (0.0 if initial else self.field.patch_exitance)
         sources = self.field.sources[: self.field.emitters] if initial else self.field.sources
         deep = self.field.deep_emitted + (0.0 if initial else self.field.deep_reflected)
-        for rows in _coplanar(place, normal, geometry.outlines.tolerance):
+        for rows in coplanar(place, normal, geometry.outlines.tolerance):
             n = normal[rows[0]]
             sight = sight_of(geometry, transfer.limits, n, float(n @ place[rows[0]]))
             for start in range(0, len(rows), 64):
@@ -238,7 +238,8 @@ class Result:
         return lumen_balance(self)
 
 
-def _checked_points(points, normals) -> tuple[np.ndarray, np.ndarray]:
+def checked_points(points, normals) -> tuple[np.ndarray, np.ndarray]:
+    """Points and unit normals, both (m, 3) float; `SceneError` where they are none."""
     try:
         place, normal = np.array(points, float), np.array(normals, float)
     except (TypeError, ValueError):
@@ -257,7 +258,7 @@ def _checked_points(points, normals) -> tuple[np.ndarray, np.ndarray]:
     return place, normal / length[:, None]
 
 
-def _coplanar(points: np.ndarray, normals: np.ndarray, tolerance: float) -> list[np.ndarray]:
+def coplanar(points: np.ndarray, normals: np.ndarray, tolerance: float) -> list[np.ndarray]:
     """Rows of points that share a plane."""
     if not len(points):
         return []

@@ -72,6 +72,11 @@ class Outlines:
         return Obstacles(np.arange(len(self.vertices)), self.vertices, bounding, self.normals, self.offsets)
 
     @cached_property
+    def back_counts(self) -> np.ndarray:
+        """(o,) bool: whether light on the back goes anywhere, onto a receiver or on by a mirror."""
+        return self.two_sided | np.array([m.reflects_both_sides for m in self.materials], bool)
+
+    @cached_property
     def any_specular(self) -> bool:
         """Whether any surface mirrors or transmits regularly."""
         return any(m.is_specular or m.is_transparent for m in self.materials)

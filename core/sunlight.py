@@ -187,6 +187,8 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
     walls, wall_offsets = prism(vertices, beam.travel, cosine)
     found = []
     for k in np.flatnonzero(np.abs(cosine) > 1e-12):
+        if cosine[k] > 0 and not outlines.back_counts[present[k]]:
+            continue
         region = vertices[k][None]
         if beam.mouth is not None:
             around, at = _mouth_prism(beam.mouth, beam.travel)

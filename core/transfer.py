@@ -2,34 +2,34 @@
 
 from __future__ import annotations
 
-import logging
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .daylight import Daylight
-from .errors import SceneError, TransferFileError
+from .errors import SceneError
 from .estimate import Trial, make_trial
-from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
 from .fingerprint import Fingerprint
 from .flaws import Finding
-from .form_factors import Conservation, Exchange, gather_nodes, patch_means
-from .geometry import Geometry, make_geometry
-from .globe import Globe
-from .inspection import inspect, refuse
+from .form_factors import Conservation, Exchange
+from .geometry import Geometry
+from .inspection import inspect
 from .nodes import Nodes
-from .options import Options, checked_memory, checked_scene, checked_threads
-from .planes import find_planes
+from .options import Options, checked_scene
 from .scene import Scene
 from .sky import UniformSky
-from .specular import ChainLimits, exact_mirrors
-from .stages import Progress, Recorder, Stage
+from .specular import ChainLimits
+from .stages import Progress, Stage
 
-logger = logging.getLogger(__name__)
+if TYPE_CHECKING:
+    from .annual import Annual
 
-_LOOKING = "visibility and form factors"
+LOOKING = "visibility and form factors"
+"""What most of preparing goes into."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +143,113 @@ class Transfer:
 
         return solve_light(self, light, tolerance=tolerance, cycles=cycles, progress=progress)
 
+    def solve_many(
+        self,
+        lights: Iterable[Daylight | None],
+        *,
+        points=None,
+        normals=None,
+        sun_spacing: float = 3.0,
+        memory: float | None = None,
+        progress: Progress | None = None,
+    ) -> np.ndarray:
+        """Illuminance for many skies and Suns at once, all reflections included.
+
+        Light adds up: skies are multiplied with what each parcel of the sky gives. So are Suns with what the positions
+        around them give, whose sunlight falls as exact polygons and goes on from patch to patch. docs/method.md says
+        what that errs by.
+
+        Parameters
+        ----------
+        lights : iterable of Daylight or None
+            None = the dark: luminous surfaces alone. A Sun counts as a point, whatever its ``disc``.
+        points, normals : (m, 3) array of float, optional
+            Free points, as in `Result.at`; default: the faces' fronts.
+        sun_spacing : float
+            Degrees between the Sun's positions that are followed, between which light is interpolated; 0 = each light's
+            own position.
+        memory : float, optional
+            Most bytes that may be held.
+        progress : callable(fraction, stage_name) -> bool, optional
+            True to go on, False to cancel.
+
+        Returns
+        -------
+        (n, faces) or (n, m) float32 [lx]
+
+        Raises
+        ------
+        SceneError
+            Where an option is out of range, more memory is needed than is allowed, or light multiplies without end.
+        Cancelled
+            Where ``progress`` says so.
+        """
+        from .block import make_block, solve_many
+
+        return solve_many(
+            make_block(
+                self,
+                lights,
+                points=points,
+                normals=normals,
+                sun_spacing=sun_spacing,
+                memory=memory,
+                whole=True,
+                progress=progress,
+            )
+        )
+
+    def annual(
+        self,
+        lights: Iterable[Daylight | None],
+        *,
+        hours=None,
+        limits: Iterable[float] | None = None,
+        points=None,
+        normals=None,
+        sun_spacing: float = 3.0,
+        memory: float | None = None,
+        progress: Progress | None = None,
+    ) -> Annual:
+        """Daylight of a year: hours within limits on each face or point, piece by piece in little memory.
+
+        Parameters
+        ----------
+        lights : iterable of Daylight or None
+            One for each hour.
+        hours : (n,) array of float or bool, optional
+            Hours that each light stands for, or which of them count (occupied ones); default: 1 each.
+        limits : iterable of float, optional
+            Illuminances to count hours by [lx]; default: 100, 300, 500, 750, 1000, 2000, 3000, which standards name.
+        points, normals, sun_spacing, memory, progress
+            As in `solve_many`.
+
+        Returns
+        -------
+        Annual
+
+        Raises
+        ------
+        SceneError, Cancelled
+            As `solve_many`.
+        """
+        from .annual import LIMITS, checked_hours, count_hours
+        from .block import make_block
+
+        many = list(lights)
+        counted = checked_hours(hours, len(many))
+        block = make_block(
+            self,
+            [light for light, share in zip(many, counted, strict=True) if share > 0],
+            points=points,
+            normals=normals,
+            sun_spacing=sun_spacing,
+            memory=memory,
+            whole=False,
+            progress=progress,
+        )
+        return count_hours(self, block, counted[counted > 0], LIMITS if limits is None else limits, points is None)
+
     def with_materials(self, scene: Scene) -> Transfer:
         """The same form factors with other diffuse reflectances and exitances: nothing is looked at again.
 
@@ -167,12 +274,12 @@ class Transfer:
         if difference:
             raise SceneError(f"This transfer was prepared for {difference}; prepare the scene anew")
         geometry = self.geometry.with_materials(scene)
-        note = Stage(_LOOKING, 0.0, "shapes, mirrors and panes are those of an earlier transfer")
+        note = Stage(LOOKING, 0.0, "shapes, mirrors and panes are those of an earlier transfer")
         return replace(
             self,
             geometry=geometry,
             conservation=replace(self.conservation, kept=geometry.areas_kept),
-            stages=(*(stage for stage in self.stages if stage.skipped and stage.name != _LOOKING), note),
+            stages=(*(stage for stage in self.stages if stage.skipped and stage.name != LOOKING), note),
             findings=inspect(scene, geometry.planes),
         )
 
@@ -196,229 +303,3 @@ class Transfer:
         from .store import save_transfer
 
         return save_transfer(self, path)
-
-
-def prepare(
-    scene: Scene,
-    *,
-    bands: int = 60,
-    max_area: float | None = None,
-    specular_cutoff: float = 1e-3,
-    threads: int | None = None,
-    memory: float | None = None,
-    accuracy: float | None = None,
-    reuse: Transfer | None = None,
-    cache: str | Path | None = None,
-    progress: Progress | None = None,
-) -> Transfer:
-    """Find everything that geometry and materials decide.
-
-    Parameters
-    ----------
-    scene : Scene
-    bands : int
-        Bands of the globe; 60 gives 5,902 parcels. An odd number is raised by one.
-    max_area : float, optional
-        Largest area of a face [m²]. None = chosen for the scene, some 10,000 faces; inf = faces as given, only
-        triangulated. Purely specular and black surfaces are not cut for their size.
-    specular_cutoff : float
-        Specular chains are followed down to this product of reflectances.
-    threads : int, optional
-        Default: as many as the machine has cores.
-    memory : float, optional
-        Most bytes that the transfer may hold.
-    accuracy : float, optional
-        Relative error that about 95 of 100 faces shall keep below, 0.001 to 0.2 (see `Result.error`). Bands, receivers,
-        patches and, where ``max_area`` is not given, faces are then chosen for it from a trial solution; ``bands`` has
-        no meaning.
-    reuse : Transfer, optional
-        An earlier one, whose form factors are kept where they hold (see `Transfer.with_materials`); where they do not,
-        the scene is prepared anew, and ``stages`` say why.
-    cache : path, optional
-        A file as by `Transfer.save`, used in the same way; where it does not hold it is written anew.
-    progress : callable(fraction, stage_name) -> bool, optional
-        True to go on, False to cancel.
-
-    Returns
-    -------
-    Transfer
-
-    Raises
-    ------
-    SceneError
-        Where the scene is empty or an option is out of range; the message names it and the remedy.
-    OSError
-        Where the cache cannot be read.
-    Cancelled
-        Where ``progress`` says so.
-    """
-    checked_scene(scene)
-    options = Options.checked(bands=bands, max_area=max_area, specular_cutoff=specular_cutoff, accuracy=accuracy)
-    threads, memory, cache = checked_threads(threads), checked_memory(memory), _checked_cache(cache)
-    recorder = Recorder(progress)
-    kept = _kept(scene, options, threads, reuse, cache, recorder)
-    if kept is not None:
-        recorder.report(1.0, "prepared")
-        return kept
-    common = (options, threads, memory)
-    if options.accuracy is None:
-        transfer = _prepared(scene, options.bands, 1.0, *common, recorder)
-    else:
-        times = times_for(options.accuracy)
-        with recorder.stage("trial solution", 0.0):
-            trial = _prepared(scene, TRIAL_BANDS, min(times, TRIAL_TIMES), *common, Recorder(recorder.part(0.0, 0.2)))
-            errors, areas = trial.errors_by_globe(), trial.geometry.fracture.element_areas
-            bands = bands_for(options.accuracy, TRIAL_BANDS, errors, areas)
-        transfer = _prepared(scene, bands, times, *common, Recorder(recorder.part(0.2, 1.0), recorder.stages))
-    return transfer if cache is None else _cached(transfer, cache)
-
-
-def load(path, scene: Scene, *, threads: int | None = None) -> Transfer:
-    """Load a transfer that `Transfer.save` wrote.
-
-    Parameters
-    ----------
-    path : str or path
-    scene : Scene
-        That which it was prepared for; diffuse reflectances and exitances may have changed.
-    threads : int, optional
-        Default: as many as the machine has cores.
-
-    Returns
-    -------
-    Transfer
-        With the options that it was prepared with.
-
-    Raises
-    ------
-    TransferFileError
-        Where the file is stale, damaged, or no transfer; the message names it and the remedy.
-    OSError
-        Where it cannot be read.
-    """
-    from .store import load_transfer
-
-    return load_transfer(path, checked_scene(scene), None, checked_threads(threads))
-
-
-def _kept(scene: Scene, options: Options, threads: int, reuse, cache: Path | None, recorder: Recorder):
-    """An earlier transfer, or one from a file, if it holds for the scene; else None, with the reason in the stages."""
-    if reuse is not None:
-        if not isinstance(reuse, Transfer):
-            raise SceneError(f"reuse must be a luzespecular.Transfer, not {type(reuse).__name__}")
-        difference = reuse.fingerprint.difference(Fingerprint.of(scene, options))
-        if not difference:
-            return replace(reuse.with_materials(scene), threads=threads)
-        recorder.skip("reuse", f"the transfer was prepared for {difference}")
-    if cache is not None:
-        from .store import load_transfer
-
-        if not cache.exists():
-            recorder.skip("cache", f"'{cache}' is not there yet")
-            return None
-        try:
-            with recorder.stage("cache", 0.0):
-                kept = load_transfer(cache, scene, options, threads)
-        except TransferFileError as error:
-            recorder.skip("cache", str(error))
-            return None
-        note = Stage(_LOOKING, 0.0, f"taken from '{cache}'")
-        return replace(kept, stages=(*recorder.stages, note))
-    return None
-
-
-def _cached(transfer: Transfer, cache: Path) -> Transfer:
-    """The transfer, saved; a disk that is full is no reason to lose it."""
-    recorder = Recorder(stages=list(transfer.stages))
-    try:
-        with recorder.stage("cache", 1.0):
-            transfer.save(cache)
-    except OSError as error:
-        logger.warning("The transfer was not saved: %s", error)
-        recorder.skip("cache", f"not saved: {error}")
-    return replace(transfer, stages=tuple(recorder.stages))
-
-
-def _checked_cache(cache) -> Path | None:
-    if cache is None:
-        return None
-    try:
-        path = Path(cache)
-    except TypeError:
-        raise SceneError(f"cache must be the path of a file, not {cache!r}") from None
-    if path.is_dir() or not path.absolute().parent.is_dir():
-        raise SceneError(f"cache '{path}' must be a file in a folder that exists")
-    return path
-
-
-def _prepared(
-    scene: Scene,
-    bands: int,
-    times: float,
-    options: Options,
-    threads: int,
-    memory: float | None,
-    recorder: Recorder,
-) -> Transfer:
-    """See `prepare`: all that follows once the fineness is known."""
-    globe = Globe.cut_at_horizon(bands)  # a parcel is sky or ground, never both
-    with recorder.stage("planes", 0.0):
-        planes = find_planes(scene)
-    with recorder.stage("scene check", 0.005):
-        findings = inspect(scene, planes)
-        refuse(findings)
-    with recorder.stage("fracture", 0.01):
-        geometry = make_geometry(scene, planes, globe, options.max_area, times)
-    limits = ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines))
-    _check_memory(geometry, memory)
-    with recorder.stage(_LOOKING, 0.02):
-        lattice, nodes, gathered, unsure = gather_nodes(
-            geometry, limits, times, threads, lambda done: recorder.report(0.02 + 0.97 * done, _LOOKING)
-        )
-        conservation = Conservation.of(geometry, nodes, gathered)
-        patch_factors = patch_means(geometry, nodes, gathered.form_factors)
-        spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
-        exchange = Exchange(patch_factors, spread, conservation.missing)
-    if not geometry.outlines.any_specular:
-        recorder.skip("specular chains", "no surface mirrors or transmits regularly")
-    recorder.report(1.0, "prepared")
-    specular_rows = np.flatnonzero(gathered.specular_rows)
-    deep_rows = np.array(sorted(gathered.deep), np.int64)
-    return Transfer(
-        geometry=geometry,
-        form_factors=gathered.form_factors,
-        sky_direct=gathered.sky_direct,
-        sky_specular=gathered.sky_specular[specular_rows]
-        if len(specular_rows)
-        else np.zeros((0, geometry.targets.columns), np.float32),
-        specular_rows=specular_rows,
-        deep_factors=np.stack([gathered.deep[row] for row in deep_rows.tolist()])
-        if len(deep_rows)
-        else np.zeros((0, geometry.targets.patches.count), np.float32),
-        deep_rows=deep_rows,
-        exchange=exchange,
-        unlit=gathered.unlit,
-        truncated=gathered.truncated,
-        nodes=nodes,
-        lattice=lattice,
-        unsure=unsure,
-        conservation=conservation,
-        times=times,
-        limits=limits,
-        threads=threads,
-        fingerprint=Fingerprint.of(scene, options),
-        stages=tuple(recorder.stages),
-        findings=findings,
-    )
-
-
-def _check_memory(geometry: Geometry, memory: float | None) -> None:
-    elements, columns = len(geometry.element_points), geometry.targets.columns
-    patches = geometry.targets.patches.count
-    specular = 2 if geometry.outlines.any_specular else 1
-    needed = 4.0 * elements * (patches + specular * columns) + 8.0 * patches**2
-    if memory is not None and needed > memory:
-        raise SceneError(
-            f"The scene needs {needed / 1e9:.2f} GB for {elements} receivers, more than the {memory / 1e9:.2f} GB "
-            "of 'memory'; raise max_area, lower bands, or allow more memory"
-        )

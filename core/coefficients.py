@@ -1,0 +1,259 @@
+"""Daylight coefficients: light by each parcel of the sky and each position of the Sun, all reflections included.
+
+Light adds up, so that any number of skies and hours is one matrix product with what unit lights give (Tregenza &
+Waters 1983). Parcels of the sky are those of the globe. Sunlight falls exactly, as polygons; what it sends on goes from
+patch to patch, like all other light here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .daylight import Daylight
+from .form_factors import patch_means, trusted
+from .gather import gather
+from .geometry import sight_of
+from .nodes import Weights
+from .parallel import run_parallel
+from .radiosity import all_settled
+from .result import coplanar
+from .solve import patch_means as means_over_patches
+from .solve import patch_properties
+from .sunlight import light_points, trace_sun
+from .transfer import Transfer
+
+_COLUMNS = 2048
+"""Unit lights whose reflections are found together: all of them at first solve the same equations anew."""
+
+_ROWS = 512
+_POINTS = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Free points that light is wanted at.
+
+    Attributes
+    ----------
+    points : (r, 3) float
+        Relative to the scene's centre.
+    normals : (r, 3) float, unit
+    """
+
+    points: np.ndarray
+    normals: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Coefficients:
+    """What receivers, faces or free points, get from unit lights.
+
+    Attributes
+    ----------
+    parcels : (k,) int
+        Parcels of the sky that are seen by anything; the ground counts as one more than all parcels.
+    suns : (s, 3) float
+        Directions to the Sun.
+    diffuse : (m, k + s) float32
+        Per unit of luminance [lx/(cd/m²)], and of the Sun's normal illuminance; of the Sun only what is reflected
+        diffusely. At the nodes, or at free points.
+    weights : Weights or None
+        Receivers' values from those of ``diffuse``; None where its rows are the receivers.
+    by_sun : (2, s, r) float32
+        Sunlight per unit of its normal illuminance, straight and by mirrors.
+    steady : (r,) float
+        By luminous surfaces [lx].
+    """
+
+    parcels: np.ndarray
+    suns: np.ndarray
+    diffuse: np.ndarray
+    weights: Weights | None
+    by_sun: np.ndarray
+    steady: np.ndarray
+
+    @property
+    def count(self) -> int:
+        """Number of receivers."""
+        return len(self.steady)
+
+    def rows(self, some: slice) -> np.ndarray:
+        """(r, k + s) float32: coefficients of some receivers."""
+        out = self.diffuse[some].copy() if self.weights is None else weighted(self.weights, some, self.diffuse)
+        out[:, len(self.parcels) :] += self.by_sun[:, :, some].sum(axis=0).T
+        return out
+
+
+def weighted(weights: Weights, some: slice, values: np.ndarray) -> np.ndarray:
+    """(r, c) float32: weighted sums of values ``(m, c)`` for some rows."""
+    entries = slice(weights.start[some.start], weights.start[some.stop])
+    used, column = np.unique(weights.node[entries], return_inverse=True)
+    shares = np.zeros((some.stop - some.start, len(used)), np.float32)
+    np.add.at(shares, (weights.rows_of(some), column.reshape(-1)), weights.weight[entries])
+    return shares @ values[used]
+
+
+def face_weights(transfer: Transfer) -> Weights:
+    """Means over the faces' fronts from values at the nodes."""
+    cuts, weights = transfer.geometry.fracture, transfer.nodes.weights
+    faces, element = len(cuts.faces), weights.rows
+    area = np.bincount(cuts.element_side, weights=cuts.element_areas, minlength=cuts.sides)
+    side = cuts.element_side[element]
+    share = weights.weight * cuts.element_areas[element] / area[side]
+    front = side < faces
+    return Weights.of(side[front], weights.node[front], share[front], faces)
+
+
+def find_coefficients(
+    transfer: Transfer, suns: np.ndarray, places: Places | None, report: Callable[[float, str], None]
+) -> Coefficients:
+    """What faces, or free points, get from unit lights.
+
+    Parameters
+    ----------
+    transfer : Transfer
+    suns : (s, 3) float, unit
+        Directions to the Sun.
+    places : Places or None
+        None = the faces' fronts.
+    report : callable(fraction, stage)
+
+    Returns
+    -------
+    Coefficients
+
+    Raises
+    ------
+    SceneError
+        Where light multiplies without end.
+    """
+    geometry = transfer.geometry
+    looked = None if places is None else _look(transfer, places)
+    seen = _seen(transfer.sky_direct) | _seen(transfer.sky_specular)
+    parcels = np.flatnonzero(seen if looked is None else seen | _seen(looked[0]))
+    receivers = len(geometry.fracture.faces) if places is None else len(places.points)
+    by_sun = np.zeros((2, len(suns), receivers), np.float32)
+    on_patches = np.zeros((geometry.targets.patches.count, len(suns)), np.float32)
+    stays = _Stays(transfer)
+    lumens = np.zeros(len(suns))
+
+    def follow(one: int, checkpoint: Callable[[], None]) -> None:
+        sunlight = trace_sun(geometry.outlines, suns[one], 1.0, transfer.limits.cutoff, checkpoint)
+        direct, by_mirrors = sunlight.on_elements(
+            geometry.fracture.elements, geometry.fracture.element_sheet, geometry.planes.outline_sheet
+        )
+        on_patches[:, one] = means_over_patches(geometry, direct + by_mirrors)
+        lumens[one] = stays.elements @ (direct + by_mirrors)
+        if places is None:
+            by_sun[:, one] = [geometry.fracture.side_means(values)[:receivers] for values in (direct, by_mirrors)]
+        else:
+            by_sun[:, one] = light_points(geometry.outlines, sunlight.beams, places.points, places.normals)
+
+    if len(suns):
+        run_parallel(follow, list(range(len(suns))), transfer.threads, lambda done: report(0.6 * done, "sun"))
+    report(0.6, "interreflection")
+    columns = len(parcels) + len(suns)
+    diffuse = np.zeros((len(transfer.nodes.points) if looked is None else receivers, columns), np.float32)
+    reflectance, _ = patch_properties(geometry)
+    reflects = reflectance.any()
+    for first in range(0, columns, _COLUMNS):
+        some = np.arange(first, min(first + _COLUMNS, columns))
+        sky, sun = some[some < len(parcels)], some[some >= len(parcels)] - len(parcels)
+        direct = _sky_rows(transfer, parcels[sky])
+        out = diffuse[:, first : first + len(some)]
+        if looked is not None:
+            out[:, : len(sky)] += np.float32(np.pi) * looked[0][:, parcels[sky]]
+        if reflects:
+            initial = np.concatenate(
+                [patch_means(geometry, transfer.nodes, direct).astype(np.float32), on_patches[:, sun]], axis=1
+            )
+            exitance = reflectance[:, None].astype(np.float32) * all_settled(transfer.exchange, reflectance, initial)
+            if looked is not None:
+                out += looked[1] @ exitance
+            else:
+                out += stays.settled(_from_patches(transfer, exitance), direct, lumens[sun])
+        if looked is None:
+            out[:, : len(sky)] += direct
+        report(0.6 + 0.4 * (first + len(some)) / columns, "interreflection")
+    return Coefficients(
+        parcels,
+        suns,
+        diffuse,
+        face_weights(transfer) if places is None else None,
+        by_sun,
+        _steady(transfer, places),
+    )
+
+
+def _seen(matrix: np.ndarray) -> np.ndarray:
+    seen = np.zeros(matrix.shape[1], bool)
+    for first in range(0, len(matrix), _ROWS):
+        seen |= (matrix[first : first + _ROWS] != 0).any(axis=0)
+    return seen
+
+
+def _sky_rows(transfer: Transfer, parcels: np.ndarray) -> np.ndarray:
+    """(m, k) float32: illuminance of the nodes by parcels of unit luminance, without diffuse reflection."""
+    rows = transfer.sky_direct[:, parcels]
+    rows[transfer.specular_rows] += transfer.sky_specular[:, parcels]
+    rows *= np.float32(np.pi)
+    return rows
+
+
+def _from_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:
+    """(m, c) float32: illuminance of the nodes by patches of exitances ``(p, c)``; see `solve.gather_patches`."""
+    out = transfer.form_factors @ exitance
+    conservation = transfer.conservation
+    out += conservation.spread.astype(np.float32)[:, None] * (conservation.missing.astype(np.float32) @ exitance)
+    return out
+
+
+class _Stays:
+    """What of light stays in the scene, as sums over its nodes: see `solve.settled_home`, for many lights at once."""
+
+    def __init__(self, transfer: Transfer) -> None:
+        geometry, conservation = transfer.geometry, transfer.conservation
+        area, share = geometry.fracture.element_areas, geometry.of_elements("diffuse_reflectance")
+        self.elements = area * share * (1 - conservation.lost)
+        self.nodes = transfer.nodes.weights.gathered(self.elements, len(transfer.nodes.points))
+        self.kept = transfer.nodes.weights.gathered(conservation.kept, len(transfer.nodes.points))
+        spread = conservation.spread / max(float(self.kept @ conservation.spread), 1e-300)
+        trust = trusted(float((area * share) @ conservation.lost) / max(float((area * share).sum()), 1e-300))
+        self.evened = trust / max(1 - float(self.nodes @ spread), 1e-12) * spread
+
+    def settled(self, reflected: np.ndarray, direct: np.ndarray, lumens: np.ndarray) -> np.ndarray:
+        """Interreflected light ``(m, c)`` that adds up, for light that comes to the nodes, or as lumens to elements."""
+        missing = (self.nodes - self.kept) @ reflected
+        missing[: direct.shape[1]] += self.nodes @ direct
+        missing[direct.shape[1] :] += lumens
+        return reflected + np.outer(self.evened, missing)
+
+
+def _look(transfer: Transfer, places: Places) -> tuple[np.ndarray, np.ndarray]:
+    """Form factors from free points to the sky's parcels and to patches, both float32."""
+    geometry = transfer.geometry
+    targets = geometry.targets
+    sky = np.zeros((len(places.points), targets.columns), np.float32)
+    patches = np.zeros((len(places.points), targets.patches.count), np.float32)
+    for rows in coplanar(places.points, places.normals, geometry.outlines.tolerance):
+        normal = places.normals[rows[0]]
+        sight = sight_of(geometry, transfer.limits, normal, float(normal @ places.points[rows[0]]))
+        for first in range(0, len(rows), _POINTS):
+            some = rows[first : first + _POINTS]
+            found = gather(sight, places.points[some], targets)
+            sky[some], patches[some] = found.sky, found.patches
+    return sky, patches
+
+
+def _steady(transfer: Transfer, places: Places | None) -> np.ndarray:
+    """(r,) float: illuminance by luminous surfaces alone."""
+    count = len(transfer.geometry.fracture.faces) if places is None else len(places.points)
+    if not any(material.exitance > 0 for material in transfer.geometry.surface_materials):
+        return np.zeros(count)
+    dark = transfer.solve(Daylight())
+    if places is None:
+        return dark.illuminance
+    return dark.at(places.points + transfer.geometry.planes.centre, places.normals)
