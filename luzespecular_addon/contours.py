@@ -78,8 +78,10 @@ def remove(scene: bpy.types.Scene) -> None:
 def _new(scene: bpy.types.Scene) -> bpy.types.Object:
     object_ = bpy.data.objects.new(NAME, bpy.data.meshes.new(NAME))
     object_.luzespecular.is_results, object_.luzespecular.results_side = True, SIDE
-    object_.hide_render = object_.hide_select = True
+    object_.hide_render = True
     scene.collection.objects.link(object_)
+    for view_layer in scene.view_layers:  # drawn by `overlays`, thicker and on any ground
+        object_.hide_set(True, view_layer=view_layer)
     return object_
 
 

@@ -104,8 +104,6 @@ def recolour(scene: bpy.types.Scene) -> None:
     shown = shown_meshes(scene)
     if not shown:
         return
-    if scene.luzespecular.display.quantity == "error":
-        errors.find(scene.name, session.current, _errors_found)
     scale = _scale(scene, shown)
     smooth = scene.luzespecular.display.shading == "SMOOTH"
     for one in shown:
@@ -115,6 +113,8 @@ def recolour(scene: bpy.types.Scene) -> None:
     contours.update(scene, shown, scale)
     pins.attach(scene, shown)
     false_colour.update(scene, scale)
+    if scene.luzespecular.display.quantity == "error":
+        errors.find(scene.name, session.current, _errors_found)
 
 
 def _colour(one: Shown, scale: colours.ColourScale, smooth: bool) -> None:
@@ -219,8 +219,8 @@ def apply_view(scene: bpy.types.Scene) -> None:
             _set_hidden(scene, object_, False)
             role.property_unset("hidden_for_results")
     if has_results(scene):
-        _shade_viewports(scene, backface_culling=show_fine)
-    false_colour.apply(scene)
+        _shade_viewports(scene)
+    false_colour.apply(scene, current_scale(scene))
 
 
 def clear(scene: bpy.types.Scene) -> None:
@@ -274,8 +274,8 @@ def _viewports(scene: bpy.types.Scene):
                     yield window.screen.name, index, area
 
 
-def _shade_viewports(scene: bpy.types.Scene, backface_culling: bool) -> None:
-    """Switch the viewports to flat attribute colours, remembering how they were."""
+def _shade_viewports(scene: bpy.types.Scene) -> None:
+    """Switch the viewports to flat attribute colours of fronts, remembering how they were."""
     remembered = scene.luzespecular.results.shadings
     known = {(entry.name, entry.area) for entry in remembered}
     for screen, index, area in _viewports(scene):
@@ -286,7 +286,7 @@ def _shade_viewports(scene: bpy.types.Scene, backface_culling: bool) -> None:
             entry.type, entry.light, entry.color_type = shading.type, shading.light, shading.color_type
             entry.backface_culling = shading.show_backface_culling
         shading.type, shading.light, shading.color_type = "SOLID", "FLAT", "VERTEX"
-        shading.show_backface_culling = backface_culling
+        shading.show_backface_culling = True
         area.tag_redraw()
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 import blf
 import bpy
 import gpu
 import numpy as np
 from gpu_extras.batch import batch_for_shader
+from mathutils import Matrix
 from numpy.typing import NDArray
 
 FONT = 0
@@ -87,6 +89,17 @@ def tag(words: str, x: float, y: float) -> None:
     rectangle(x - width / 2, y - height / 2, width, height, PANEL_COLOUR)
     text(words, x - width / 2 + 0.4 * PADDING * scale, y - 0.35 * TEXT * scale)
     gpu.state.blend_set("NONE")
+
+
+@contextmanager
+def in_pixels() -> Iterator[None]:
+    """Draw in pixels of the region while the context lasts, where the view's matrices are in force."""
+    region = bpy.context.region
+    scale = Matrix.Diagonal((2.0 / region.width, 2.0 / region.height, 1.0, 1.0))
+    with gpu.matrix.push_pop(), gpu.matrix.push_pop_projection():
+        gpu.matrix.load_identity()
+        gpu.matrix.load_projection_matrix(Matrix.Translation((-1.0, -1.0, 0.0)) @ scale)
+        yield
 
 
 def lines(ends: NDArray[np.float32], width: float, colour: tuple[float, ...]) -> None:

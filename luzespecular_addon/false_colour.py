@@ -28,7 +28,7 @@ def shader_values(values: np.ndarray) -> np.ndarray:
     return np.where(np.isnan(values), _NOT_COMPUTED, np.maximum(values, _LEAST))
 
 
-def apply(scene: bpy.types.Scene) -> None:
+def apply(scene: bpy.types.Scene, scale: colours.ColourScale) -> None:
     """Have renders show the false colours, or what they showed before, as the settings say."""
     settings, results = scene.luzespecular.display, scene.luzespecular.results
     carriers = results_object.all_of(scene)
@@ -36,14 +36,14 @@ def apply(scene: bpy.types.Scene) -> None:
     planes = work_planes.all_of(scene)
     active = settings.in_renders and bool(shown or any(writeback.holds_results(mesh) for mesh in _meshes(scene)))
     for object_ in [*carriers, *planes]:
-        object_.hide_render = not (active and (object_ in shown or object_ in planes))
+        _show_in_renders(object_, active and (object_ in shown or object_ in planes))
     hide_own = active and bool(shown)
     for object_ in scene.objects:
         _hide_from_camera(object_, hide_own and object_.luzespecular.hidden_for_results)
     if active:
         material = results.false_colour or _new_material(results)
-        _set_up(material, culls=bool(shown))
         _override(scene, material)
+        update(scene, scale)
     else:
         _restore(scene)
 
@@ -67,6 +67,15 @@ def update(scene: bpy.types.Scene, scale: colours.ColourScale) -> None:
 
 def _meshes(scene: bpy.types.Scene):
     return (object_.data for object_ in scene.objects if object_.type == "MESH")
+
+
+def _show_in_renders(object_: bpy.types.Object, shown: bool) -> None:
+    settings = object_.luzespecular
+    if shown and object_.hide_render:
+        object_.hide_render, settings.in_renders_for_results = False, True
+    elif not shown and settings.in_renders_for_results:
+        object_.hide_render = True
+        settings.property_unset("in_renders_for_results")
 
 
 def _hide_from_camera(object_: bpy.types.Object, hidden: bool) -> None:
@@ -118,7 +127,7 @@ def _group_of(material: bpy.types.Material) -> bpy.types.NodeTree:
 
 
 def _new_material(results: bpy.types.PropertyGroup) -> bpy.types.Material:
-    """Make the material: the group's colour as light that faces give off, and nothing where backs are culled."""
+    """Make the material: the group's colour as light that faces give off, and nothing on backs, as in the viewport."""
     material = bpy.data.materials.new(NAME)
     if material.node_tree is None:  # before Blender 5.0 a new material has no shader yet
         material.use_nodes = True
@@ -130,21 +139,14 @@ def _new_material(results: bpy.types.PropertyGroup) -> bpy.types.Material:
     emission = _node(tree, "ShaderNodeEmission", "Emission", 0, 0)
     clear = _node(tree, "ShaderNodeBsdfTransparent", "Clear", 0, -120)
     geometry = _node(tree, "ShaderNodeNewGeometry", "Geometry", -200, 300)
-    culls = _node(tree, "ShaderNodeMath", "Cull Backs", 0, 200)
-    culls.operation = "MULTIPLY"
     mix = _node(tree, "ShaderNodeMixShader", "Mix", 200, 0)
     output = _node(tree, "ShaderNodeOutputMaterial", "Output", 400, 0)
     tree.links.new(group.outputs["Color"], emission.inputs["Color"])
-    tree.links.new(geometry.outputs["Backfacing"], culls.inputs[0])
-    tree.links.new(culls.outputs[0], mix.inputs[0])
+    tree.links.new(geometry.outputs["Backfacing"], mix.inputs[0])
     tree.links.new(emission.outputs[0], mix.inputs[1])
     tree.links.new(clear.outputs[0], mix.inputs[2])
     tree.links.new(mix.outputs[0], output.inputs["Surface"])
     return material
-
-
-def _set_up(material: bpy.types.Material, culls: bool) -> None:
-    material.node_tree.nodes["Cull Backs"].inputs[1].default_value = float(culls)
 
 
 def _new_group() -> bpy.types.NodeTree:

@@ -82,11 +82,14 @@ def parse_levels(text: str) -> list[float]:
     return sorted(levels)
 
 
-def label_edges(lines: IsoLines, spacing: float, most: int = 40) -> NDArray[np.intp]:
-    """Choose the pieces that carry labels: no two nearer than `spacing`, levels taking turns, at most `most`."""
+def label_edges(lines: IsoLines, spacing: float, most: int = 24) -> NDArray[np.intp]:
+    """Choose the pieces that carry labels: none where lines crowd, no two nearer than `spacing`, at most `most`.
+
+    Labels of one level keep twice the distance; levels take turns.
+    """
     middles = lines.ends.mean(axis=1)
     chosen: list[int] = []
-    free = np.ones(len(middles), bool)
+    free = ~_crowded(middles, lines.values, spacing / 3.0)
     levels = list(np.unique(lines.values))
     while levels and len(chosen) < most:
         for level in list(levels):
@@ -98,7 +101,19 @@ def label_edges(lines: IsoLines, spacing: float, most: int = 40) -> NDArray[np.i
             centre = np.median(middles[candidates], axis=0)
             best = candidates[np.argmin(np.linalg.norm(middles[candidates] - centre, axis=1))]
             chosen.append(int(best))
-            free &= np.linalg.norm(middles - middles[best], axis=1) >= spacing
+            apart = np.linalg.norm(middles - middles[best], axis=1)
+            free &= apart >= np.where(lines.values == level, 2.0 * spacing, spacing)
             if len(chosen) == most:
                 break
     return np.array(sorted(chosen), np.intp)
+
+
+def _crowded(places: NDArray, values: NDArray, width: float) -> NDArray[np.bool_]:
+    """Whether another level runs through the same cell of a grid: at the edges of sun patches all of them do."""
+    if not len(places) or not width > 0.0:
+        return np.zeros(len(places), bool)
+    cell = np.unique(np.floor(places / width), axis=0, return_inverse=True)[1].reshape(-1)
+    lowest, highest = np.full(cell.max() + 1, np.inf), np.full(cell.max() + 1, -np.inf)
+    np.minimum.at(lowest, cell, values)
+    np.maximum.at(highest, cell, values)
+    return (lowest < highest)[cell]

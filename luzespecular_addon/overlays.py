@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import blf
 import bpy
 import gpu
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from mathutils import Matrix, Vector
 
 from . import contours, display, drawing, mesh_arrays, probe
 from .legend import label
@@ -15,6 +13,7 @@ from .legend import label
 _HALO, _CORE = (0.0, 0.0, 0.0, 0.55), (1.0, 1.0, 1.0, 0.95)
 _HALO_WIDTH, _CORE_WIDTH = 3.0, 1.3
 _MARK = 4
+_DEPTH_TOLERANCE = 1e-6
 
 _handles: list[object] = []
 
@@ -36,50 +35,53 @@ def unregister() -> None:
 def _draw_lines() -> None:
     scene, space = bpy.context.scene, bpy.context.space_data
     object_ = contours.find(scene)
-    if object_ is None or not space.overlay.show_overlays or not object_.visible_get():
+    if object_ is None or not space.overlay.show_overlays:
         return
     mesh = object_.data
     ends = mesh_arrays.edge_ends(mesh)
+    values, labels = (mesh_arrays.read_edge_floats(mesh, name) for name in (contours.VALUE, contours.LABEL))
+    if values is None or labels is None:
+        return
+    chosen = np.flatnonzero(labels)
+    places = ends[chosen].mean(axis=1)
+    seen = _seen(places)
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("LESS_EQUAL")
     drawing.lines(ends, _HALO_WIDTH, _HALO)
     drawing.lines(ends, _CORE_WIDTH, _CORE)
-    values, labels = (mesh_arrays.read_edge_floats(mesh, name) for name in (contours.VALUE, contours.LABEL))
-    if values is not None and labels is not None:
-        for edge in np.flatnonzero(labels):
-            _write_in_space(label(float(values[edge])), ends[edge].mean(axis=0))
     gpu.state.depth_test_set("NONE")
+    with drawing.in_pixels():
+        for value, (x, y) in zip(values[chosen][seen], _pixels(places[seen]), strict=True):
+            drawing.tag(label(float(value)), float(x), float(y))
     gpu.state.blend_set("NONE")
 
 
-def _write_in_space(words: str, place: np.ndarray) -> None:
-    """Write a text that faces the viewer at a point in space, so that what stands before it hides it."""
-    view = bpy.context.region_data
-    pixel = _pixel_at(place)
-    if pixel <= 0.0:
-        return
-    size = drawing.size()
-    drawing.begin_texts()
-    width = drawing.width_of([words])
-    towards = view.view_matrix.inverted().to_3x3()
-    # A little nearer to the viewer than the line itself.
-    lifted = towards @ Vector((0.0, 0.0, 1.0)) * (4.0 * pixel * size)
-    matrix = Matrix.Translation(Vector(place) + lifted) @ towards.to_4x4() @ Matrix.Scale(pixel, 4)
-    with gpu.matrix.push_pop():
-        gpu.matrix.multiply_matrix(matrix)
-        half, tall = 0.5 * width + 3 * size, 0.75 * drawing.TEXT * size
-        drawing.rectangle(-half, -tall, 2 * half, 2 * tall, drawing.PANEL_COLOUR)
-        gpu.matrix.translate((0.0, 0.0, 1.0))
-        blf.color(drawing.FONT, *drawing.TEXT_COLOUR)
-        blf.position(drawing.FONT, -0.5 * width, -0.35 * drawing.TEXT * size, 0.0)
-        blf.draw(drawing.FONT, words)
+def _seen(places: np.ndarray) -> np.ndarray:
+    """Whether points in space, (m, 3), are in the view with nothing drawn before them."""
+    region = bpy.context.region
+    clip = _clip(places)
+    inside = (clip[:, 3] > 0.0) & (np.abs(clip[:, :2]) < clip[:, 3:]).all(axis=1)
+    if not inside.any():
+        return inside
+    depths = 0.5 + 0.5 * clip[:, 2] / np.where(inside, clip[:, 3], 1.0)
+    buffer = gpu.state.active_framebuffer_get()
+    left, bottom = gpu.state.viewport_get()[:2]
+    for row in np.flatnonzero(inside):
+        x, y = ((0.5 + 0.5 * clip[row, :2] / clip[row, 3]) * (region.width, region.height)).astype(int)
+        before = buffer.read_depth(left + int(x), bottom + int(y), 1, 1)
+        inside[row] = depths[row] <= np.array(before).item() + _DEPTH_TOLERANCE
+    return inside
 
 
-def _pixel_at(place: np.ndarray) -> float:
-    """Return how large a pixel is at a point in space; 0 behind the viewer."""
-    view, region = bpy.context.region_data, bpy.context.region
-    depth = (view.perspective_matrix @ Vector((*place, 1.0))).w
-    return max(depth, 0.0) / (0.5 * region.width * view.window_matrix[0][0])
+def _pixels(places: np.ndarray) -> np.ndarray:
+    """Return where points in space, (m, 3), stand in the region, (m, 2) pixels."""
+    clip, region = _clip(places), bpy.context.region
+    return (0.5 + 0.5 * clip[:, :2] / clip[:, 3:]) * (region.width, region.height)
+
+
+def _clip(places: np.ndarray) -> np.ndarray:
+    matrix = np.array(bpy.context.region_data.perspective_matrix)
+    return np.column_stack([places, np.ones(len(places))]) @ matrix.T
 
 
 def _draw_pins() -> None:

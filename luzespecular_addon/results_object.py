@@ -17,6 +17,9 @@ from .export import Export
 
 NAMES = {"front": "LuzEspecular results", "back": "LuzEspecular results (backs)"}
 
+_THICKNESS = 5e-5
+"""How far backs stand behind their fronts, over the extent of all."""
+
 SURFACE = "surface"
 """INT attribute of the FACE domain: the row of the surface in the results table."""
 
@@ -47,7 +50,9 @@ def write(scene: bpy.types.Scene, export: Export, result: luz.Result) -> None:
             continue
         faces = np.concatenate([faces for _, faces in chosen])
         corners = result.vertices[faces] / export.unit_scale
-        positions = (corners if label == "front" else corners[:, ::-1]).reshape(-1, 3).astype(np.float32)
+        if label == "back":
+            corners = _behind(corners)
+        positions = corners.reshape(-1, 3).astype(np.float32)
         if object_ is None or not _stands_at(object_.data, positions):
             if object_ is not None:
                 _remove(object_)
@@ -57,6 +62,14 @@ def write(scene: bpy.types.Scene, export: Export, result: luz.Result) -> None:
         rows = np.repeat([row for row, _ in chosen], [len(faces) for _, faces in chosen])
         mesh_arrays.write_face_integers(object_.data, SURFACE, rows)
         object_.data.update_tag()
+
+
+def _behind(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return triangles, (n, 3, 3), that look back from just behind, for rays that pass through culled faces."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    return corners[:, ::-1] - _THICKNESS * extent * normals[:, None]
 
 
 def _stands_at(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> bool:

@@ -13,6 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = "bl_ext.user_default.luzespecular"
 ROOMS = (
+    "choices",
     "colours",
     "contours",
     "commands",

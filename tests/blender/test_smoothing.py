@@ -123,3 +123,12 @@ def test_labels_keep_their_distance_and_every_level_has_one(addon):
     assert apart.min() >= 2.0
     assert set(lines.values[chosen].tolist()) == {100.0, 200.0}
     assert len(addon.isolines.label_edges(lines, 0.0, most=7)) == 7
+
+
+def test_no_labels_where_lines_crowd(addon):
+    x = np.linspace(0.0, 10.0, 101)
+    crowd = [[(a, y, 0.0), (b, y, 0.0)] for y in (0.0, 0.01) for a, b in pairwise(x)]
+    alone = [[(a, 9.0, 0.0), (b, 9.0, 0.0)] for a, b in pairwise(x)]
+    lines = addon.isolines.IsoLines(np.array(crowd + alone), np.repeat([100.0, 200.0, 100.0], 100), np.arange(300))
+    assert (addon.isolines.label_edges(lines, 2.0) >= 200).all()
+    assert len(addon.isolines.label_edges(lines, 2.0)) >= 2
