@@ -13,7 +13,7 @@ from .nodes import Nodes, settled
 from .parallel import chunks_of_receivers, run_parallel
 from .specular import ChainLimits, GroupSight
 
-_CHUNK_CELLS = 250_000
+_CHUNK_CELLS = 500_000
 """Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
 
 _ROOM = 1.5

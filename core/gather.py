@@ -150,26 +150,26 @@ def _whole_beams(s: Sighting, targets: Targets, unlit: np.ndarray):
             if dead:
                 unlit[s.rows[rows]] += dead * np.where(seen, weights, 0.0).sum(axis=1)
                 continue
-            distance = np.where(seen, s.view.nearest[here], np.float32(0))  # elsewhere it may be infinite
-            cell = _grid_cells(s, targets, sheet, back * fronts, rows, columns, distance)
+            cell = _grid_cells(s, targets, sheet, back * fronts, rows, columns, s.view.nearest[here])
             row = np.broadcast_to(rows[:, None], seen.shape)[seen]
             yield row, grid.grid[base + cell[seen]], weights[seen]
 
 
 def _grid_cells(s: Sighting, targets: Targets, sheet: int, behind: int, rows, columns, distance) -> np.ndarray:
-    """(r, k) int32: cell of the sheet's grid that each beam ends in."""
+    """(r, k) int32: cell of the sheet's grid that each beam ends in; anything where the distance is infinite."""
     grid, axes = targets.patches, targets.planes.sheet_axes[sheet]
     origin, scale, shape = (g[sheet + behind] for g in (grid.grid_origin, grid.grid_scale, grid.grid_shape))
     # in-plane place = axes · point + distance · (axes · direction), in cells
     start = ((s.points[rows] @ axes.T - origin) * scale).astype(np.float32)
     along = ((s.beams.directions[columns] @ axes.T) * scale).astype(np.float32)
     cells = []
-    for axis in (0, 1):
-        place = distance * along[:, axis]
-        place += start[:, axis, None]
-        np.maximum(place, 0, out=place)
-        np.minimum(place, np.float32(shape[axis] - 0.5), out=place)
-        cells.append(place.astype(np.int32))
+    with np.errstate(invalid="ignore"):
+        for axis in (0, 1):
+            place = distance * along[:, axis]
+            place += start[:, axis, None]
+            np.maximum(place, 0, out=place)
+            np.minimum(place, np.float32(shape[axis] - 0.5), out=place)
+            cells.append(place.astype(np.int32))
     cells[0] *= np.int32(shape[1])
     return np.add(cells[0], cells[1], out=cells[0])
 
@@ -195,8 +195,9 @@ def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.
     axes = targets.planes.sheet_axes[sheet]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         distance = height / np.einsum("nc,nc->n", towards, s.obstacles.normals[obstacle])
-        place = np.einsum("nac,nc->na", axes, s.points[row] + distance[:, None] * towards)
-    place = np.nan_to_num((place - grid.grid_origin[side]) * grid.grid_scale[side], posinf=1e30, neginf=-1e30)
+    distance = np.nan_to_num(distance, posinf=1e30, neginf=-1e30)
+    place = np.einsum("nac,nc->na", axes, s.points[row] + distance[:, None] * towards)
+    place = (place - grid.grid_origin[side]) * grid.grid_scale[side]
     shape = grid.grid_shape[side]
     cell = np.clip(place, 0, shape - 0.5).astype(np.int64)
     return row, grid.grid[base + cell[:, 0] * shape[:, 1] + cell[:, 1]], weight
@@ -222,9 +223,9 @@ def _add_mirrored_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
     row, beam = np.divmod(free, s.weights.shape[1])
     weight = s.weights[row, beam]
     parcels, shares = _columns(s.beams.directions, targets)
-    for k in range(4):
-        flat = s.rows[row] * targets.columns + parcels[beam, k]
-        out += np.bincount(flat, weights=weight * shares[beam, k], minlength=out.size).reshape(out.shape)
+    flat = s.rows[row, None] * targets.columns + parcels[beam]
+    shares = weight[:, None] * shares[beam]
+    out += np.bincount(flat.ravel(), weights=shares.ravel(), minlength=out.size).reshape(out.shape)
 
 
 def _splat(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) -> None:
@@ -232,9 +233,9 @@ def _splat(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) ->
     if not len(mine):
         return
     parcels, shares = _columns(s.view.part_direction[mine], targets)
-    row = s.rows[s.view.part_row[mine]]
-    for k in range(4):
-        np.add.at(out, (row, parcels[:, k]), parts[mine] * shares[:, k])
+    flat = s.rows[s.view.part_row[mine], None] * targets.columns + parcels
+    weights = parts[mine, None] * shares
+    out += np.bincount(flat.ravel(), weights=weights.ravel(), minlength=out.size).reshape(out.shape)
 
 
 def _columns(directions: np.ndarray, targets: Targets) -> tuple[np.ndarray, np.ndarray]:

@@ -174,11 +174,15 @@ def _columns_within(hull, outline, bounded, heights, directions, reach):
     if not planes.shape[1]:
         return every, np.zeros(len(every), bool)
     length = np.linalg.norm(planes, axis=2).max(axis=0)
-    products = np.einsum("kc,hec->ehk", directions, planes)
-    margin = length[:, None] * reach[None]
-    possible = (products.max(axis=1) >= -margin).all(axis=0)
+    across = np.ascontiguousarray(directions.T)
+    possible, least = np.ones(len(directions), bool), []
+    for edge in range(planes.shape[1]):
+        products = np.ascontiguousarray(planes[:, edge]) @ across
+        margin = length[edge] * reach
+        possible &= products.max(axis=0) >= -margin
+        least.append(products.min(axis=0) - margin)
     columns = np.flatnonzero(possible)
-    certain = (products.min(axis=1)[:, columns] > margin[:, columns]).all(axis=0)
+    certain = (np.minimum.reduce(least) > 0)[columns]
     return columns, certain
 
 
