@@ -30,9 +30,13 @@ def newell_normal(polygon) -> np.ndarray:
     (..., 3) float
     """
     p = np.asarray(polygon, float)
-    p = p - p[..., :1, :]
-    following = np.concatenate([p[..., 1:, :], p[..., :1, :]], axis=-2)
-    return cross(p, following).sum(axis=-2)
+    p = p[..., 1:, :] - p[..., :1, :]
+    out = np.empty((*p.shape[:-2], 3))
+    for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
+        first, second = p[..., i], p[..., j]
+        out[..., k] = np.einsum("...v,...v->...", first[..., :-1], second[..., 1:])
+        out[..., k] -= np.einsum("...v,...v->...", second[..., :-1], first[..., 1:])
+    return out
 
 
 def areas(polygons) -> np.ndarray:
@@ -291,8 +295,26 @@ def clip(polygons, normal, offset=0.0) -> np.ndarray:
     n = np.broadcast_to(np.asarray(normal, float), (m, 3))
     s = np.einsum("mvc,mc->mv", p, n) - np.broadcast_to(np.asarray(offset, float), (m,))[:, None]
     inside = s >= 0
-    if inside.all():
+    across = np.ascontiguousarray(inside.T)  # NumPy is slow where it reduces over a short last axis
+    some, every = across.any(axis=0), across.all(axis=0)
+    if every.all():
         return p
+    cut = np.flatnonzero(some & ~every)
+    if not len(cut):
+        return np.where(some[:, None, None], p, p[:, :1]) if every.any() else p[:, :1]
+    if len(cut) == m:
+        return _cut(p, s, inside)
+    parts = _cut(p[cut], s[cut], inside[cut])
+    out = np.repeat(p[:, :1], max(v if every.any() else 1, parts.shape[1]), axis=1)
+    if every.any():
+        out[every] = widen(p[every], out.shape[1])
+    out[cut] = widen(parts, out.shape[1])
+    return out
+
+
+def _cut(p, s, inside) -> np.ndarray:
+    """Polygons ``(m, v, 3)`` cut by the planes that their corners stand ``s`` (m, v) above."""
+    m, v = s.shape
     nxt, s_next = np.roll(p, -1, axis=1), np.roll(s, -1, axis=1)
     crossing = inside != (s_next >= 0)
     gap = np.where(crossing, s - s_next, 1.0)
@@ -303,10 +325,9 @@ def clip(polygons, normal, offset=0.0) -> np.ndarray:
     used[:, 0::2], used[:, 1::2] = inside, crossing
     counts = used.sum(axis=1)
     width = max(int(counts.max()), 1)
-    order = np.argsort(~used, axis=1, kind="stable")[:, :width]
-    place = np.minimum(np.arange(width)[None], np.maximum(counts - 1, 0)[:, None])
-    order = np.take_along_axis(order, place, axis=1)
-    return np.take_along_axis(slots, order[:, :, None], axis=1)
+    place = np.minimum(np.arange(width), counts[:, None] - 1)
+    place += (np.cumsum(counts) - counts)[:, None]
+    return slots.reshape(-1, 3)[np.flatnonzero(used)[place]]
 
 
 def lambert_form_factor(polygons, normal) -> np.ndarray:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -17,8 +18,11 @@ from .materials import Material
 from .projection import HalfSpace, reflect, reflect_points
 from .specular import ChainLimits, Outlines
 
-_FAINT = 1e-2
-"""Mirrored images this much fainter than the cut-off, by the source's share in all flux, are not looked for."""
+_FAINT = 3e-4
+"""Of the illuminance that the sources' flux would be, spread over all surfaces: what gives less is not looked for."""
+
+_TOGETHER = 16
+"""Sources of one plane that are clipped at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +86,7 @@ def gather_sources(
     normal,
     limits: ChainLimits,
     checkpoint: Callable[[], None] = lambda: None,
+    faint: float = _FAINT,
 ) -> np.ndarray:
     """Illuminance from sources at receivers of one plane, direct, through panes and in mirrors.
 
@@ -96,20 +101,89 @@ def gather_sources(
         Images by more than ``exact_mirrors`` are left out.
     checkpoint : callable
         Called between sources; may raise to stop.
+    faint : float
+        Mirrors, and sources in them, that can give a receiver no more than this share of `even_illuminance` are not
+        looked for there.
 
     Returns
     -------
     (r,) float [lx]
     """
-    total = np.zeros(len(points))
     if not sources or not len(points):
-        return total
+        return np.zeros(len(points))
     horizon = HalfSpace(np.asarray(normal, float), float(np.asarray(normal) @ points[0]))
     # one in the receivers' own plane too: it comes into view by way of others
     mirrors = [o for o, material in enumerate(outlines.materials) if material.is_specular]
-    flux = np.array([source.exitance * float(polygons.areas(source.polygon)) for source in sources])
-    view = _SourceView(outlines, sources, flux / flux.sum(), mirrors, limits, checkpoint)
-    return view.illuminance(_Leg(np.asarray(points, float), horizon, None, (), (), 1.0, None, 0))
+    least = faint * even_illuminance(outlines, sources)
+    view = _SourceView(outlines, _coplanar(sources, outlines), mirrors, limits, least, checkpoint)
+    return view.illuminance(_Leg(np.asarray(points, float), horizon, None, None, (), (), 1.0, None, 0))
+
+
+def even_illuminance(outlines: Outlines, sources: list[Source]) -> float:
+    """What the sources' flux would be, spread over all surfaces [lx]."""
+    flux = sum(source.exitance * float(polygons.areas(source.polygon)) for source in sources)
+    return flux / max(float(polygons.areas(outlines.vertices).sum()), 1e-300)
+
+
+@dataclass(frozen=True, eq=False)
+class _Coplanar:
+    """Sources of one plane and side.
+
+    Attributes
+    ----------
+    plane : HalfSpace
+        Before it they are seen.
+    polygons : (s, v, 3) float, padded
+    exitance : (s,) float
+    """
+
+    plane: HalfSpace
+    polygons: np.ndarray
+    exitance: np.ndarray
+
+    @cached_property
+    def spheres(self) -> tuple[np.ndarray, np.ndarray]:
+        """Centres (s, 3) and radii (s,) of spheres around the sources."""
+        centres = self.polygons.mean(axis=1)
+        return centres, np.linalg.norm(self.polygons - centres[:, None], axis=2).max(axis=1)
+
+    @cached_property
+    def fluxes(self) -> np.ndarray:
+        """(s,) float [lm]."""
+        return self.exitance * polygons.areas(self.polygons)
+
+    def most(self, points, height) -> np.ndarray:
+        """(r, s) float: no less than what points at a height before the plane get [lx]."""
+        centres, radii = self.spheres
+        height = height[:, None]
+        near = np.maximum(np.linalg.norm(points[:, None] - centres, axis=2) - radii, height)
+        return np.minimum(self.fluxes * (height / near) / (np.pi * near**2), self.exitance)
+
+    @cached_property
+    def brightest(self) -> float:
+        """No less than the exitance at any one place, where sources lie on one another."""
+        across = polygons.plane_basis(self.plane.normal)
+        flat = self.polygons @ across.T
+        low, high = flat.min(axis=1), flat.max(axis=1)
+        meet = (np.minimum(high[:, None], high) > np.maximum(low[:, None], low)).all(axis=2)
+        return float((meet @ self.exitance).max())
+
+
+def _coplanar(sources: list[Source], outlines: Outlines) -> list[_Coplanar]:
+    groups: list[tuple[HalfSpace, list[Source]]] = []
+    for source in sources:
+        normal, offset = source.plane
+        for plane, members in groups:
+            alike = plane.normal @ normal > 1 - 1e-12 and abs(plane.offset - offset) <= outlines.tolerance
+            if alike and len(members) < _TOGETHER:
+                members.append(source)
+                break
+        else:
+            groups.append((HalfSpace(normal, offset), [source]))
+    return [
+        _Coplanar(plane, polygons.pad([s.polygon for s in members])[0], np.array([s.exitance for s in members]))
+        for plane, members in groups
+    ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +197,8 @@ class _Leg:
         Above their own plane, mirrored likewise.
     window : (r, v, 3) float or None
         What each receiver sees of the last mirror through all before it, relative to the receiver.
+    opening : (r,) float or None
+        Form factor to the window.
     mirrors : tuple of Mirrored
     screens : tuple of Screen
         What lies on the way so far.
@@ -137,6 +213,7 @@ class _Leg:
     points: np.ndarray
     horizon: HalfSpace
     window: np.ndarray | None
+    opening: np.ndarray | None
     mirrors: tuple[Mirrored, ...]
     screens: tuple[Screen, ...]
     throughput: float
@@ -148,22 +225,33 @@ class _Leg:
         """What all that is seen lies within."""
         return [self.horizon] if self.beyond is None else [self.horizon, self.beyond]
 
-    def clipped(self, polygon) -> np.ndarray:
-        """(1, v, 3) float: part of a polygon within the limits."""
-        part = polygon[None]
+    def clipped(self, shapes) -> np.ndarray:
+        """(s, u, 3) float: parts of polygons ``(s, v, 3)`` within the limits."""
         for half in self.limits:
-            part = polygons.clip(part, half.normal, half.offset)
-        return part
+            shapes = polygons.clip(shapes, half.normal, half.offset)
+        return shapes
 
-    def seen(self, rows, polygon) -> tuple[np.ndarray, np.ndarray]:
-        """Rows that see some of a polygon through the window, and what they see, relative to them."""
+    def seen(self, rows, which, shapes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of pairs of a row and one of some polygons, those where it is seen through the window.
+
+        Parameters
+        ----------
+        rows, which : (n,) int
+        shapes : (s, v, 3) float
+
+        Returns
+        -------
+        rows, which : (m,) int
+        seen : (m, u, 3) float
+            Relative to the receivers.
+        """
         if not len(rows):
-            return rows, np.zeros((0, 1, 3))
-        shape = polygon[None] - self.points[rows][:, None]
+            return rows, which, np.zeros((0, 1, 3))
+        shape = shapes[which] - self.points[rows][:, None]
         if self.window is not None:
             shape = within_cones(shape, self.window[rows])
         some = _has_area(shape)
-        return rows[some], shape[some]
+        return rows[some], which[some], shape[some]
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,42 +260,65 @@ class _SourceView:
 
     Attributes
     ----------
-    flux : (s,) float
-        Share of each source in the flux of all.
+    least : float
+        What gives no more is not looked for [lx].
     """
 
     outlines: Outlines
-    sources: list[Source]
-    flux: np.ndarray
+    groups: list[_Coplanar]
     mirrors: list[int]
     limits: ChainLimits
+    least: float
     checkpoint: Callable[[], None]
+
+    @cached_property
+    def brightest(self) -> float:
+        """No less than the exitance that is seen along any one direction, all mirrors on the way together."""
+        planes = [group.brightest for group in self.groups]
+        mixed = any(
+            (m.is_specular or m.is_transparent) and (m.diffuse_reflectance > 0 or m.exitance > 0)
+            for m in self.outlines.materials
+        )
+        return (1 + self.limits.exact_mirrors) * sum(planes) if mixed else max(planes)
 
     def illuminance(self, leg: _Leg) -> np.ndarray:
         """(r,) float: light that comes past the leg's screens, and by any further mirror [lx]."""
         total = np.zeros(len(leg.points))
-        for source, flux in zip(self.sources, self.flux, strict=True):
-            if leg.depth == 0 or leg.throughput * flux > _FAINT * self.limits.cutoff:
-                self.checkpoint()
-                self._add_source(leg, source, total)
+        for group in self.groups:
+            self.checkpoint()
+            self._add_sources(leg, group, total)
         if leg.depth < self.limits.exact_mirrors:
             for mirror in self.mirrors:
                 self._add_mirrored(leg, mirror, total)
         return total
 
-    def _add_source(self, leg: _Leg, source: Source, total: np.ndarray) -> None:
-        outlines, tolerance = self.outlines, self.outlines.tolerance
-        plane, at = source.plane
-        visible = leg.clipped(source.polygon)
-        if polygons.areas(visible)[0] <= tolerance**2:
+    def _add_sources(self, leg: _Leg, group: _Coplanar, total: np.ndarray) -> None:
+        outlines, tolerance, plane = self.outlines, self.outlines.tolerance, group.plane
+        height = leg.points @ plane.normal - plane.offset
+        rows = np.flatnonzero(height > tolerance)
+        bright = np.ones((len(rows), len(group.exitance)), bool)
+        if leg.opening is not None:
+            bright = leg.throughput * group.most(leg.points[rows], height[rows]) > self.least
+            bright &= leg.throughput * leg.opening[rows, None] * group.exitance > self.least
+        if not bright.any():
             return
-        rows, shape = leg.seen(np.flatnonzero(leg.points @ plane - at > tolerance), visible[0])
-        if not len(rows):
+        visible = leg.clipped(group.polygons)
+        row, which = np.nonzero(bright & (polygons.areas(visible) > tolerance**2))
+        row, which, shape = leg.seen(rows[row], which, visible)
+        if not len(row):
             return
-        between = _between(outlines, leg.points[rows], visible[0], [HalfSpace(plane, at), *leg.limits])
+        rows, place = np.unique(row, return_inverse=True)
+        target = visible[np.unique(which)].reshape(-1, 3)
+        between = _between(outlines, leg.points[rows], target, [plane, *leg.limits])
         screens = [*leg.screens, *(Screen(polygon, o) for o, polygon in between)]
-        factor = _seen_factor(outlines, shape, leg.points[rows], leg.horizon.normal, screens, leg.mirrors)
-        total[rows] += source.exitance * factor
+        total[rows] += _light_past(
+            outlines,
+            _Shapes(place.reshape(-1), shape, group.exitance[which]),
+            leg.points[rows],
+            leg.horizon.normal,
+            screens,
+            leg.mirrors,
+        )
 
     def _add_mirrored(self, leg: _Leg, mirror: int, total: np.ndarray) -> None:
         outlines, tolerance = self.outlines, self.outlines.tolerance
@@ -218,7 +329,7 @@ class _SourceView:
             return
         if leg.beyond is not None and not _above(outline[None], leg.beyond, tolerance)[0]:
             return  # the mirror just used, or one in its plane
-        aperture = leg.clipped(outline)
+        aperture = leg.clipped(outline[None])
         if polygons.areas(aperture)[0] <= tolerance**2:
             return
         normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
@@ -226,11 +337,14 @@ class _SourceView:
         for side in (1.0, -1.0) if both else (1.0,):
             ahead = HalfSpace(side * normal, side * offset)
             rows = np.flatnonzero(leg.points @ ahead.normal - ahead.offset > tolerance)
-            if not len(rows) or not any(_above(s.polygon[None], ahead, tolerance)[0] for s in self.sources):
+            if not len(rows) or not any(_above(g.polygons, ahead, tolerance).any() for g in self.groups):
                 continue
-            rows, window = leg.seen(rows, aperture[0])
-            if not len(rows):
+            rows, _, window = leg.seen(rows, np.zeros(len(rows), np.int64), aperture)
+            opening = np.abs(polygons.lambert_form_factor(window, leg.horizon.normal))
+            bright = throughput * self.brightest * opening > self.least
+            if not bright.any():
                 continue
+            rows, window, opening = rows[bright], window[bright], opening[bright]
             between = _between(outlines, leg.points[rows], aperture[0], [ahead, *leg.limits], skip=mirror)
             screens = [*leg.screens, *(Screen(polygon, o) for o, polygon in between)]
             passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in leg.mirrors]
@@ -239,6 +353,7 @@ class _SourceView:
                     reflect_points(leg.points[rows], normal, offset),
                     leg.horizon.reflected(normal, offset),
                     reflect(window, normal),
+                    opening,
                     (*passed, Mirrored(material, normal)),
                     tuple(s.reflected(normal, offset) for s in screens),
                     throughput,
@@ -299,59 +414,88 @@ def _between(outlines: Outlines, points, target, half_spaces: list[HalfSpace], s
     apart = ((near.max(axis=0) > tolerance) & (far.min(axis=0) < -tolerance)) | (
         (near.min(axis=0) < -tolerance) & (far.max(axis=0) > tolerance)
     )
-    for o in index[apart]:
-        part = outlines.vertices[o][None]
-        for half in half_spaces:
-            part = polygons.clip(part, half.normal, half.offset)
-        if polygons.areas(part)[0] > tolerance**2:
-            yield int(o), part[0]
+    kept = index[apart]
+    parts = outlines.vertices[kept]
+    for half in half_spaces:
+        parts = polygons.clip(parts, half.normal, half.offset)
+    wide = polygons.areas(parts) > tolerance**2
+    return list(zip(kept[wide].tolist(), parts[wide], strict=True))
 
 
-def _seen_factor(outlines: Outlines, shape, points, normal, screens: list[Screen], mirrors) -> np.ndarray:
-    """(r,) float: form factor to what is seen of polygons, times what panes let through and mirrors reflect."""
-    row = np.arange(len(points))
-    weight = np.ones(len(points))
+@dataclass(frozen=True, eq=False)
+class _Shapes:
+    """What is left of bright polygons.
+
+    Attributes
+    ----------
+    row : (n,) int
+        Receiver of each.
+    shape : (n, v, 3) float, padded
+        Relative to it.
+    weight : (n,) float
+        Exitance times what panes let through [lm/m²].
+    """
+
+    row: np.ndarray
+    shape: np.ndarray
+    weight: np.ndarray
+
+    def take(self, index) -> _Shapes:
+        """Some of the polygons."""
+        return _Shapes(self.row[index], self.shape[index], self.weight[index])
+
+    @classmethod
+    def joined(cls, parts: list[_Shapes]) -> _Shapes:
+        """All polygons in one."""
+        parts = [p for p in parts if len(p.row)] or parts[:1]
+        return cls(
+            np.concatenate([p.row for p in parts]),
+            polygons.joined([p.shape for p in parts]),
+            np.concatenate([p.weight for p in parts]),
+        )
+
+
+def _light_past(outlines: Outlines, shapes: _Shapes, points, normal, screens: list[Screen], mirrors) -> np.ndarray:
+    """(r,) float: illuminance by what is seen of polygons past screens, as mirrors reflect it [lx]."""
     for screen in screens:
         planes, edges, facing = _edge_cones(screen.polygon[None] - points[:, None])
-        height = np.einsum("nvc,nwc->nvw", shape, planes[row])
-        reach = np.abs(shape).max(axis=(1, 2))
-        overlaps = ((height.max(axis=1) > 1e-12 * reach[:, None]) | ~edges[row]).all(axis=1) & (facing[row] != 0)
-        row, shape, weight = _pass_screen(outlines, screen, row, shape, weight, planes, edges, overlaps)
-        if not len(row):
+        height = np.matmul(shapes.shape, planes.transpose(0, 2, 1)[shapes.row])
+        reach = np.abs(shapes.shape).max(axis=(1, 2))
+        overlaps = ((height.max(axis=1) > 1e-12 * reach[:, None]) | ~edges[shapes.row]).all(axis=1)
+        overlaps &= facing[shapes.row] != 0
+        if overlaps.any():
+            behind = _past_screen(outlines, screen, shapes.take(overlaps), planes, edges)
+            shapes = _Shapes.joined([shapes.take(~overlaps), *behind])
+        if not len(shapes.row):
             return np.zeros(len(points))
-    centre = shape.mean(axis=1)
+    centre = shapes.shape.mean(axis=1)
+    weight = shapes.weight
     for mirror in mirrors:
         weight = weight * mirror.share(centre)
-    factor = np.maximum(polygons.lambert_form_factor(shape, normal), 0.0)
-    return np.bincount(row, weights=weight * factor, minlength=len(points))
+    factor = np.maximum(polygons.lambert_form_factor(shapes.shape, normal), 0.0)
+    return np.bincount(shapes.row, weights=weight * factor, minlength=len(points))
 
 
-def _pass_screen(outlines, screen, row, shape, weight, planes, edges, overlaps):
+def _past_screen(outlines: Outlines, screen: Screen, shapes: _Shapes, planes, edges) -> list[_Shapes]:
     """Polygons less a screen's cone; behind a pane they are kept, dimmed."""
-    kept = [(row[~overlaps], shape[~overlaps], weight[~overlaps])]
-    row, shape, weight = row[overlaps], shape[overlaps], weight[overlaps]
+    kept = []
     material = outlines.materials[screen.outline]
     for e in range(planes.shape[1]):
-        if not len(row):
+        if not len(shapes.row):
             break
-        wall = planes[row, e]
-        outside = polygons.clip(shape, -wall)
-        keep = edges[row, e] & _has_area(outside)
-        kept.append((row[keep], outside[keep], weight[keep]))
-        inside = polygons.clip(shape, wall)
-        inside = inside if edges[:, e].all() else _choose(edges[row, e], inside, shape)
-        keep = _has_area(inside)
-        row, shape, weight = row[keep], inside[keep], weight[keep]
+        wall, edge = planes[shapes.row, e], edges[shapes.row, e]
+        outside = _Shapes(shapes.row, polygons.clip(shapes.shape, -wall), shapes.weight)
+        kept.append(outside.take(edge & _has_area(outside.shape)))
+        inside = polygons.clip(shapes.shape, wall)
+        inside = inside if edge.all() else _choose(edge, inside, shapes.shape)
+        shapes = _Shapes(shapes.row, inside, shapes.weight).take(_has_area(inside))
     if material.is_transparent:
         plane = polygons.newell_normal(screen.polygon)
-        centre = shape.mean(axis=1)
+        centre = shapes.shape.mean(axis=1)
         length = np.linalg.norm(centre, axis=1) * np.linalg.norm(plane)
-        kept.append((row, shape, weight * material.transmittance_at((centre @ plane) / np.maximum(length, 1e-300))))
-    kept = [part for part in kept if len(part[0])]
-    if not kept:
-        return row[:0], np.zeros((0, 1, 3)), weight[:0]
-    rows, shapes, weights = zip(*kept, strict=True)
-    return np.concatenate(rows), polygons.joined(shapes), np.concatenate(weights)
+        through = material.transmittance_at((centre @ plane) / np.maximum(length, 1e-300))
+        kept.append(_Shapes(shapes.row, shapes.shape, shapes.weight * through))
+    return kept
 
 
 def _choose(which, one, other):

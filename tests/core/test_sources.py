@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 
 import luzespecular as luz
 from luzespecular import polygons
+from luzespecular.sources import Source, even_illuminance, gather_sources
+from luzespecular.specular import ChainLimits
 
 GLOW = luz.Material(exitance=1000.0)
 UP = np.array([0.0, 0.0, 1.0])
@@ -302,3 +304,49 @@ def test_images_by_many_mirrors_come_by_the_globe():
     np.testing.assert_allclose(seen, initial / 100, rtol=0.02)
     every = transfer.solve(DARK, tolerance=1e-8)
     np.testing.assert_allclose(every.illuminance, 100 / (1 - 0.7 - 0.1), rtol=0.03, err_msg="reflected light too")
+
+
+def on_floor(count):
+    return np.column_stack([np.random.default_rng(1).uniform(0.05, 1.95, (count, 2)), np.zeros(count)])
+
+
+def mirrored_lamps(lamps, points, faint):
+    """Lux from lamps ``(polygon, exitance)`` on upright points of height nought between four mirrors, past a screen."""
+    walls = box_polygons((2.0, 2.0, 2.0))
+    room = scene_with(
+        {**walls, "screen": ceiling((0.5, 0.9), (0.4, 1.3), 1.1)},
+        {name: luz.Material(specular_reflectance=0.9) for name in list(walls)[2:]},
+    )
+    outlines = luz.prepare(room, bands=4, max_area=math.inf).geometry.outlines
+    centre = 0.5 * (outlines.vertices.reshape(-1, 3).min(axis=0) + outlines.vertices.reshape(-1, 3).max(axis=0))
+    middle = centre - [1.0, 1.0, 1.0]
+    given = [Source(polygon + middle, exitance) for polygon, exitance in lamps]
+    limits = ChainLimits(1e-3, 4)
+    got = gather_sources(outlines, given, points + middle, UP, limits, faint=faint)
+    return got, even_illuminance(outlines, given)
+
+
+LAMPS = [
+    (ceiling((0.2, 0.7), (0.3, 0.6), 1.9), 900.0),
+    (ceiling((1.1, 1.7), (0.2, 1.6), 1.9), 300.0),
+    (ceiling((1.2, 1.5), (0.4, 1.9), 1.9), 500.0),
+    (ceiling((1.4, 1.8), (0.1, 0.3), 1.5), 700.0),
+]
+
+
+def test_lamps_of_one_plane_are_gathered_together_as_one_by_one():
+    points = on_floor(40)
+    together, _ = mirrored_lamps(LAMPS, points, 0.0)
+    one_by_one = sum(mirrored_lamps([lamp], points, 0.0)[0] for lamp in LAMPS)
+    np.testing.assert_allclose(together, one_by_one, rtol=1e-11)
+
+
+@pytest.mark.parametrize("faint", [3e-4, 1e-3, 1e-2])
+def test_images_left_out_are_as_faint_as_is_said(faint):
+    points = on_floor(40)
+    every, even = mirrored_lamps(LAMPS, points, 0.0)
+    some, _ = mirrored_lamps(LAMPS, points, faint)
+    missing = every - some
+    assert (missing >= -1e-9 * every).all() and missing.max() > 0
+    # among a few dozen images each gives no more than that
+    assert missing.max() < 30 * faint * even
