@@ -73,6 +73,7 @@ def made_up_result(export):
         illuminance=values,
         areas=front.areas,
         notes=(),
+        transfer=SimpleNamespace(findings=()),
         light=SimpleNamespace(sky_illuminance=10_000.0, sun_illuminance=0.0),
     )
 

@@ -49,12 +49,13 @@ def update(scene: bpy.types.Scene, shown: Iterable[Shown], scale: colours.Colour
     if not scene.luzespecular.display.show_lines:
         remove(scene)
         return
-    points, values = zip(*(_triangles(one) for one in shown), strict=True)
-    points, values = np.concatenate(points), np.concatenate(values)
+    parts = [_triangles(one) for one in shown if _carries_lines(scene, one.object_)]
+    parts.append((np.zeros((0, 3, 3)), np.zeros((0, 3))))
+    points, values = (np.concatenate(part) for part in zip(*parts, strict=True))
     lines = isolines.trace(points, values, levels(scene, scale))
     normals = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    extent = float(np.ptp(points.reshape(-1, 3), axis=0).max(initial=0.0))
+    extent = float(np.ptp(points.reshape(-1, 3), axis=0).max()) if len(points) else 0.0
     ends = lines.ends + _LIFT * extent * normals[lines.triangles][:, None]
     labels = isolines.label_edges(lines, _LABELS_APART * extent)
     object_ = find(scene) or _new(scene)
@@ -63,6 +64,15 @@ def update(scene: bpy.types.Scene, shown: Iterable[Shown], scale: colours.Colour
     mesh_arrays.write_edge_floats(mesh, VALUE, lines.values)
     mesh_arrays.write_edge_floats(mesh, LABEL, np.isin(np.arange(len(ends)), labels))
     mesh.update_tag()
+
+
+def _carries_lines(scene: bpy.types.Scene, object_: bpy.types.Object) -> bool:
+    settings = object_.luzespecular
+    if settings.results_side == "back":
+        return scene.luzespecular.display.show_backs
+    if settings.plane.enabled:
+        return not object_.hide_get(view_layer=scene.view_layers[0])
+    return not object_.modifiers  # whose faces are elsewhere than those of the mesh
 
 
 def remove(scene: bpy.types.Scene) -> None:

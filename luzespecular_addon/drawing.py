@@ -17,7 +17,7 @@ FONT = 0
 TEXT = 12
 LINE = 1.5 * TEXT
 PADDING = 10
-PANEL_COLOUR = (0.08, 0.08, 0.08, 0.82)
+PANEL_COLOUR = (0.06, 0.06, 0.06, 0.93)
 TEXT_COLOUR = (0.95, 0.95, 0.95, 1.0)
 """The panel brings its own background, so that texts can be read on every theme."""
 
