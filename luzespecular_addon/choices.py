@@ -42,8 +42,8 @@ QUANTITY_ITEMS = (
 )
 
 UNIT_ITEMS = (
-    ("LUX", "Lux", "Illuminance in lux"),
-    ("FACTOR", "Daylight Factor", "Share in % of what the whole sky, without Sun, gives an open horizontal plane"),
+    ("LUX", "Lux (lx)", "Illuminance"),
+    ("FACTOR", "DF (%)", "Daylight factor: share of what the whole sky, without Sun, gives an open horizontal plane"),
 )
 
 SCALE_ITEMS = (

@@ -1,6 +1,8 @@
-"""What is shown, and the table of surfaces."""
+"""What is shown and how, and the table of surfaces."""
 
 from __future__ import annotations
+
+from typing import ClassVar
 
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
@@ -26,8 +28,7 @@ class LUZESPECULAR_PT_results(Sidebar, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the panel."""
-        layout = self.layout
-        scene = context.scene
+        layout, scene, width = self.layout, context.scene, context.region.width
         if not display.has_results(scene):
             layout.label(text="No results yet", icon="INFO")
             return
@@ -35,31 +36,100 @@ class LUZESPECULAR_PT_results(Sidebar, bpy.types.Panel):
         layout.label(text=results.title, translate=False)
         layout.row().prop(settings, "view", expand=True)
         if settings.view == "RESULTS" and not display.shows_fine(scene):
-            draw_wrapped(
-                layout.column(align=True), iface_("Solve again for the fine faces"), "INFO", context.region.width
-            )
-        column = layout.column()
-        column.use_property_split = True
-        column.use_property_decorate = False
-        fine = column.column()
-        fine.active = display.shows_fine(scene)
-        fine.prop(settings, "show_backs")
+            draw_wrapped(layout.column(align=True), iface_("Solve again for the fine faces"), "INFO", width)
+        column = _settings_column(layout)
         column.prop(settings, "quantity")
         column.row().prop(settings, "unit", expand=True)
         if settings.unit == "FACTOR":
-            _draw_factor(column.column(align=True), results, context.region.width)
-        column.row().prop(settings, "shading", expand=True)
-        _draw_scale(column, settings)
-        _draw_lines(column, settings)
-        column.prop(settings, "in_renders")
+            _draw_factor(column.column(align=True), results, width)
         row = layout.row(align=True)
         row.operator("luzespecular.probe", icon="EYEDROPPER")
         row.operator("luzespecular.clear_pins", text="", icon="X")
-        _draw_table(layout, results)
-        layout.operator("luzespecular.save_table", icon="FILE_TEXT")
         layout.operator("luzespecular.clear_results", icon="TRASH")
         if len(results.notices):
-            draw_notices(layout.box(), results.notices, context.region.width)
+            draw_notices(layout.box(), results.notices, width)
+
+
+class _PartOfResults(Sidebar):
+    """Where the parts of the results' panel stand."""
+
+    bl_parent_id = "LUZESPECULAR_PT_results"
+
+    @classmethod
+    def poll(cls, context):
+        """Only with results."""
+        return display.has_results(context.scene)
+
+
+class LUZESPECULAR_PT_colours(_PartOfResults, bpy.types.Panel):
+    """Scale, range and shading of the false colours, and their legend."""
+
+    bl_label = "Colours"
+    bl_description = "Scale, range and shading of the false colours, and their legend"
+    bl_idname = "LUZESPECULAR_PT_colours"
+
+    def draw(self, context):
+        """Draw the panel."""
+        settings = context.scene.luzespecular.display
+        column = _settings_column(self.layout)
+        column.prop(settings, "scale")
+        column.row().prop(settings, "scaling", expand=True)
+        column.row().prop(settings, "shading", expand=True)
+        column.prop(settings, "use_fixed_range")
+        if settings.use_fixed_range:
+            ends = column.column(align=True)
+            for name in ("low", "high") if settings.unit == "LUX" else ("low_percent", "high_percent"):
+                ends.prop(settings, name)
+        column.prop(settings, "show_legend")
+        row = column.row()
+        row.active = display.shows_fine(context.scene)
+        row.prop(settings, "show_backs")
+        column.prop(settings, "in_renders")
+
+
+class LUZESPECULAR_PT_lines(_PartOfResults, bpy.types.Panel):
+    """Lines of equal illuminance with their values."""
+
+    bl_label = "Iso-lux Lines"
+    bl_description = "Lines of equal illuminance with their values"
+    bl_idname = "LUZESPECULAR_PT_lines"
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.scene.luzespecular.display, "show_lines", text="")
+
+    def draw(self, context):
+        """Draw the panel."""
+        settings = context.scene.luzespecular.display
+        column = _settings_column(self.layout)
+        column.active = settings.show_lines
+        column.prop(settings, "line_levels")
+        try:
+            isolines.parse_levels(settings.line_levels)
+        except ValueError as error:
+            text = iface_("'{word}' is no illuminance: give numbers such as 100, 200, 300")
+            draw_wrapped(column.column(align=True), text.format(word=error), "ERROR", context.region.width)
+
+
+class LUZESPECULAR_PT_table(_PartOfResults, bpy.types.Panel):
+    """Minimum, mean, maximum and uniformity of each surface."""
+
+    bl_label = "Table of Surfaces"
+    bl_description = "Minimum, mean, maximum and uniformity of each surface"
+    bl_idname = "LUZESPECULAR_PT_table"
+
+    def draw(self, context):
+        """Draw the panel."""
+        _draw_table(self.layout, context.scene.luzespecular.results)
+        self.layout.operator("luzespecular.save_table", icon="FILE_TEXT")
+
+
+def _settings_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    return column
 
 
 def _draw_factor(column: bpy.types.UILayout, results: bpy.types.PropertyGroup, width: float) -> None:
@@ -68,28 +138,6 @@ def _draw_factor(column: bpy.types.UILayout, results: bpy.types.PropertyGroup, w
     elif results.has_sun:
         text = iface_("Sunlight counts too: for daylight factors choose an overcast sky without Sun")
         draw_wrapped(column, text, "INFO", width)
-
-
-def _draw_scale(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    column.prop(settings, "scale")
-    column.row().prop(settings, "scaling", expand=True)
-    column.prop(settings, "use_fixed_range")
-    if settings.use_fixed_range:
-        ends = column.column(align=True)
-        for name in ("low", "high") if settings.unit == "LUX" else ("low_percent", "high_percent"):
-            ends.prop(settings, name)
-    column.prop(settings, "show_legend")
-
-
-def _draw_lines(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    column.prop(settings, "show_lines")
-    if settings.show_lines:
-        column.prop(settings, "line_levels")
-        try:
-            isolines.parse_levels(settings.line_levels)
-        except ValueError as error:
-            text = iface_("'{word}' is no illuminance: give numbers such as 100, 200, 300")
-            column.label(text=text.format(word=error), icon="ERROR", translate=False)
 
 
 def _side_name(row: bpy.types.PropertyGroup) -> str:
@@ -125,4 +173,10 @@ def _short(value: float) -> str:
     return f"{value:.0f}" if value < 9_999.5 else f"{value / 1000.0:.1f}k"
 
 
-CLASSES = (LUZESPECULAR_UL_surfaces, LUZESPECULAR_PT_results)
+CLASSES = (
+    LUZESPECULAR_UL_surfaces,
+    LUZESPECULAR_PT_results,
+    LUZESPECULAR_PT_colours,
+    LUZESPECULAR_PT_lines,
+    LUZESPECULAR_PT_table,
+)

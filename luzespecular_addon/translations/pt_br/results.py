@@ -99,11 +99,19 @@ TEXTS = {
     ),
     "Unit": "Unidade",
     "What the colours stand for": "O que as cores representam",
-    "Lux": "Lux",
-    "Illuminance in lux": "Iluminância em lux",
-    "Daylight Factor": "Fator de luz diurna",
-    "Share in % of what the whole sky, without Sun, gives an open horizontal plane": (
-        "Parcela em % do que o céu inteiro, sem Sol, dá a um plano horizontal desobstruído"
+    "Lux (lx)": "Lux (lx)",
+    "DF (%)": "FLD (%)",
+    "Daylight factor: share of what the whole sky, without Sun, gives an open horizontal plane": (
+        "Fator de luz diurna: parcela do que o céu inteiro, sem Sol, dá a um plano horizontal desobstruído"
+    ),
+    "Colours": "Cores",
+    "Scale, range and shading of the false colours, and their legend": (
+        "Escala, intervalo e sombreamento das cores falsas, e sua legenda"
+    ),
+    "Lines of equal illuminance with their values": "Linhas de igual iluminância com seus valores",
+    "Table of Surfaces": "Tabela das superfícies",
+    "Minimum, mean, maximum and uniformity of each surface": (
+        "Mínimo, média, máximo e uniformidade de cada superfície"
     ),
     "Daylight factor": "Fator de luz diurna",
     "Share of open sky": "Parcela do céu aberto",
