@@ -15,7 +15,7 @@ PYTHON ?= $(shell for p in python3.11 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test pytest lint format types zip blend benchmark clean
+.PHONY: help demo test pytest lint format types zip gui blend benchmark clean
 
 help:
 	@echo "make demo       solve the light-shelf room in Blender: lux per surface, pictures (build/demo)"
@@ -23,6 +23,7 @@ help:
 	@echo "make lint       ruff check and ruff format --check;  make format mends what can be mended"
 	@echo "make types      mypy on the solver"
 	@echo "make zip        build and validate the Blender extension (dist/)"
+	@echo "make gui        drive a real Blender window: make gui BLENDER=/path/to/blender (pictures in build/gui)"
 	@echo "make blend      write examples/light_shelf/light_shelf.blend again"
 	@echo "make benchmark  run time and error of all benchmark scenes (docs/time-and-error.md), some 10 minutes"
 	@echo "make clean      remove .venv, build and dist"
@@ -48,6 +49,10 @@ types: $(VENV)/.test
 
 zip: $(VENV)/.demo
 	$(PY) tools/build_extension.py --output dist
+
+gui: BLENDER ?= blender
+gui: $(VENV)/.demo
+	$(PY) tools/gui.py --blender "$(BLENDER)"
 
 # Written by the oldest Blender supported, so that every later one opens it.
 blend: LTS := build/blender-4.2

@@ -18,14 +18,13 @@ from typing import Any
 from . import files, tables
 from . import sun as ephemeris
 from .availability import default_daylight
-from .balance import Balance
 from .daylight import Daylight
 from .errors import LuzEspecularError, SceneError
 from .preparation import prepare
 from .result import Result
 from .sky_cie import CIESky
 from .sun import Sun
-from .terminal import Progress, clock, hours_of_day, iso_date, print_statistics
+from .terminal import Progress, clock, formats_of, hours_of_day, iso_date, print_statistics
 
 _AVAILABLE_SKIES = ("clear", "intermediate", "overcast")
 
@@ -93,7 +92,13 @@ def parser() -> argparse.ArgumentParser:
     add("--threads", type=int, metavar="N", help="default: as many as there are cores")
     add("--memory", type=float, metavar="GB", help="refuse what needs more")
     add("--cache", type=Path, metavar="FILE", help="keep what takes long there, and use it where it still holds")
-    add("--format", type=_formats, default=("csv",), metavar="F[,F…]", help="csv, json, npz (default: csv)")
+    add(
+        "--format",
+        type=formats_of("csv", "json", "npz"),
+        default=("csv",),
+        metavar="F[,F…]",
+        help="csv, json, npz (default: csv)",
+    )
     add("--no-faces", action="store_true", help="leave the single faces out of CSV and JSON")
     sun = actions.add_parser(
         "sun",
@@ -254,29 +259,13 @@ def _light(options: argparse.Namespace, altitude: float, azimuth: float) -> Dayl
 
 def _document(moment: _Moment, result: Result, statistics, lux: dict[str, list[float]], faces: bool) -> dict[str, Any]:
     """What the JSON file says of one hour."""
-    balance: Balance = result.balance
-    document: dict[str, Any] = {
+    return {
         "moment": moment.title,
         "time": moment.kind,
         "sun_altitude": moment.altitude,
         "sun_azimuth": moment.azimuth,
-        "sky_horizontal_illuminance_lx": moment.light.sky_illuminance,
-        "sun_horizontal_illuminance_lx": moment.light.sun_illuminance,
-        "surfaces": [dict(zip(tables.SURFACE_HEADER, tables.surface_row(row), strict=True)) for row in statistics],
-        "points": lux,
-        "balance_lm": {
-            "entering": balance.entering,
-            "absorbed": dict(balance.absorbed),
-            "unlit": balance.unlit,
-            "escaped": balance.escaped,
-            "truncated": balance.truncated,
-        },
-        "balance_defect": balance.defect,
+        **tables.document(result, statistics, lux, result.surfaces if faces else None),
     }
-    if faces:
-        header, rows = tables.face_rows(result, result.surfaces)
-        document["faces"] = {"columns": header, "rows": list(rows)}
-    return document
 
 
 def _sun(options: argparse.Namespace) -> None:
@@ -328,14 +317,6 @@ def _zone(text: str) -> dt.tzinfo:
         raise argparse.ArgumentTypeError(
             f"'{text}' is no time zone: write hours ahead of UTC such as -3 or 5.5, or a name such as America/Sao_Paulo"
         ) from None
-
-
-def _formats(text: str) -> tuple[str, ...]:
-    formats = tuple(part.strip().lower() for part in text.split(","))
-    unknown = [part for part in formats if part not in ("csv", "json", "npz")]
-    if unknown:
-        raise argparse.ArgumentTypeError(f"'{unknown[0]}' is no format: choose from csv, json, npz")
-    return formats
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,6 +86,46 @@ def face_rows(result: Result, names: Iterable[str]) -> tuple[list[str], Iterator
                 yield [name, label, *row]
 
     return header, rows()
+
+
+def document(
+    result: Result, statistics: Iterable[SurfaceStatistics], points: dict[str, list[float]], faces: Iterable[str] | None
+) -> dict[str, Any]:
+    """Return what a JSON file says of a result.
+
+    Parameters
+    ----------
+    result : Result
+    statistics : iterable of SurfaceStatistics
+    points : dict of str to list of float
+        Illuminances at sets of free points [lx].
+    faces : iterable of str or None
+        Surfaces whose faces are listed; None: no list of faces.
+
+    Returns
+    -------
+    dict
+        Horizontal illuminances of sky and Sun [lx], surfaces, points, the lumen balance, and the faces.
+    """
+    balance = result.balance
+    content: dict[str, Any] = {
+        "sky_horizontal_illuminance_lx": result.light.sky_illuminance,
+        "sun_horizontal_illuminance_lx": result.light.sun_illuminance,
+        "surfaces": [dict(zip(SURFACE_HEADER, surface_row(row), strict=True)) for row in statistics],
+        "points": points,
+        "balance_lm": {
+            "entering": balance.entering,
+            "absorbed": dict(balance.absorbed),
+            "unlit": balance.unlit,
+            "escaped": balance.escaped,
+            "truncated": balance.truncated,
+        },
+        "balance_defect": balance.defect,
+    }
+    if faces is not None:
+        header, rows = face_rows(result, faces)
+        content["faces"] = {"columns": header, "rows": list(rows)}
+    return content
 
 
 def arrays(result: Result) -> dict[str, NDArray]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import datetime as dt
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from .tables import SurfaceStatistics
 
@@ -75,3 +75,16 @@ def iso_date(text: str) -> dt.date:
         return dt.date.fromisoformat(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"'{text}' is no date: write it as 2026-06-22") from None
+
+
+def formats_of(*known: str) -> Callable[[str], tuple[str, ...]]:
+    """Return a reader of file formats from a command line, with commas between, that knows the given ones."""
+
+    def read(text: str) -> tuple[str, ...]:
+        formats = tuple(part.strip().lower() for part in text.split(","))
+        unknown = [part for part in formats if part not in known]
+        if unknown:
+            raise argparse.ArgumentTypeError(f"'{unknown[0]}' is no format: choose from {', '.join(known)}")
+        return formats
+
+    return read

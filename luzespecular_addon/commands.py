@@ -17,8 +17,11 @@ from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import core as luz
 from ..core import files, tables, terminal
-from . import job, light, notices, session, study
+from . import job, light, notices, pictures, session, study, work_planes
 from .translations import solver_message
+
+FORMATS = ("csv", "json", "png", "blend")
+"""What the command can write."""
 
 # Options that set one number each: option, settings group, property, explanation.
 _NUMBERS = (
@@ -30,10 +33,11 @@ _NUMBERS = (
         "--sky-illuminance",
         "sky",
         "horizontal_illuminance",
-        "lx by the sky on an open horizontal plane (with --sky cie)",
+        "lx by the sky on an open horizontal plane",
     ),
-    ("--sun-illuminance", "sky", "sun_illuminance", "lx by the Sun on a plane that faces it (with --sky cie or none)"),
+    ("--sun-illuminance", "sky", "sun_illuminance", "lx by the Sun on a plane that faces it"),
     ("--ground", "sky", "ground_reflectance", "reflectance of the ground around the scene"),
+    ("--error", "accuracy", "error", "per cent that 95 of 100 faces shall keep below (sets --fineness error)"),
     ("--bands", "accuracy", "bands", "bands of the globe (sets --fineness expert)"),
     ("--max-area", "accuracy", "max_area", "largest face in m² (sets --fineness expert)"),
 )
@@ -101,10 +105,18 @@ def parser() -> argparse.ArgumentParser:
     add("--sky", choices=("clear", "intermediate", "overcast", "cie", "none"), help="sky")
     add("--cie-type", type=int, choices=range(1, 17), metavar="1…16", help="CIE sky (sets --sky cie)")
     add("--no-sun", action="store_true", help="leave the Sun out")
-    add("--fineness", choices=("draft", "normal", "fine", "expert"), help="how finely to calculate")
+    add("--fineness", choices=("draft", "normal", "fine", "error", "expert"), help="how finely to calculate")
     for option, group, name, explanation in _NUMBERS:
         add(option, type=_number(group, name), metavar="N", help=explanation)
-    add("--no-faces", action="store_true", help="do not write the CSV of every face")
+    add(
+        "--format",
+        type=terminal.formats_of(*FORMATS),
+        default=("csv", "blend"),
+        metavar="F[,F…]",
+        help="what to write: csv (tables), json (all in one file), png (pictures with a legend), blend (copies with "
+        "their results); default: csv,blend",
+    )
+    add("--no-faces", action="store_true", help="leave the single faces out of the tables")
     add("--no-blend", action="store_true", help="do not write copies of the .blend")
     return top
 
@@ -113,10 +125,12 @@ def _solve(options: argparse.Namespace) -> int:
     scene = _scene(options.scene)
     settings = scene.luzespecular
     _apply(options, settings)
+    formats = {*options.format} - ({"blend"} if options.no_blend else set())
     hours = options.hours or [settings.site.hour]
     options.out.mkdir(parents=True, exist_ok=True)
     stem = Path(bpy.data.filepath).stem or "untitled"
     overview: list[tuple[str, ...]] = []
+    documents: list[dict] = []
     told: set[notices.Notice] = set()
     with bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
         for hour, planned in _plans(settings, hours):
@@ -127,16 +141,46 @@ def _solve(options: argparse.Namespace) -> int:
             _tell_new(study.finish(bpy.context, planned, result, solved.readings), told)
             rows = _print_table(planned, result)
             moment = f"{light.date_of(settings.site).isoformat()} {terminal.clock(hour)}"
-            overview += [(moment, settings.site.time_kind.lower(), *tables.surface_row(row)) for row in rows]
-            name = f"{stem}_{moment.replace(' ', '_').replace(':', 'h')}"
-            if not options.no_faces:
-                header, faces = tables.face_rows(result, dict.fromkeys(row.name for row in rows))
-                _written(files.write_csv(options.out / f"{name}_faces.csv", header, faces))
-            if not options.no_blend:
-                _written(_save_blend(options.out / f"{name}.blend"))
-    header = ("moment", "time", *tables.SURFACE_HEADER)
-    _written(files.write_csv(options.out / f"{stem}_surfaces.csv", header, overview))
+            kind = settings.site.time_kind.lower()
+            overview += [(moment, kind, *tables.surface_row(row)) for row in rows]
+            receivers = dict.fromkeys(row.name for row in rows)
+            path = options.out / f"{stem}_{moment.replace(' ', '_').replace(':', 'h')}"
+            if "csv" in formats and not options.no_faces:
+                header, faces = tables.face_rows(result, receivers)
+                _written(files.write_csv(_with_name(path, "_faces.csv"), header, faces))
+            if "csv" in formats and solved.readings:
+                points = work_planes.rows(scene, planned.export.unit_scale)
+                _written(files.write_csv(_with_name(path, "_work_planes.csv"), work_planes.HEADER, points))
+            if "json" in formats:
+                documents.append(_document(moment, kind, settings.site, solved, rows, not options.no_faces))
+            if "png" in formats:
+                _written(pictures.save(scene, _with_name(path, ".png")))
+            if "blend" in formats:
+                _written(_save_blend(_with_name(path, ".blend")))
+    if "csv" in formats:
+        header = ("moment", "time", *tables.SURFACE_HEADER)
+        _written(files.write_csv(options.out / f"{stem}_surfaces.csv", header, overview))
+    if "json" in formats:
+        content = {"file": bpy.data.filepath, "scene": scene.name, "moments": documents}
+        _written(files.write_json(options.out / f"{stem}.json", content))
     return 0
+
+
+def _with_name(path: Path, ending: str) -> Path:
+    return path.with_name(path.name + ending)
+
+
+def _document(moment: str, kind: str, site, solved: job.Job, rows, faces: bool) -> dict:
+    """What the JSON file says of one hour: as the console command's, with work planes for points."""
+    place = light.sun_place(site)
+    points = {reading.grid.object_name: reading.illuminance.tolist() for reading in solved.readings}
+    return {
+        "moment": moment,
+        "time": kind,
+        "sun_altitude": place.altitude,
+        "sun_azimuth": place.azimuth,
+        **tables.document(solved.result, rows, points, dict.fromkeys(row.name for row in rows) if faces else None),
+    }
 
 
 def _plans(settings: bpy.types.PropertyGroup, hours: list[float]) -> list[tuple[float, study.Study]]:
@@ -173,6 +217,10 @@ def _apply(options: argparse.Namespace, settings: bpy.types.PropertyGroup) -> No
         sky.kind = options.sky.upper()
     if options.no_sun:
         sky.use_sun = False
+    if options.sky_illuminance is not None or options.sun_illuminance is not None:
+        sky.illuminance_from = "VALUE"
+    if options.error is not None:
+        accuracy.fineness = "ERROR"
     if options.bands is not None or options.max_area is not None:
         accuracy.fineness = "EXPERT"
     if options.fineness is not None:

@@ -67,9 +67,12 @@ class Shown:
 
 
 def write(
-    scene: bpy.types.Scene, export: Export, result: luz.Result, readings: Sequence[work_planes.Reading] = ()
+    scene: bpy.types.Scene, export: Export, result: luz.Result, readings: Sequence[work_planes.Reading] | None = ()
 ) -> None:
-    """Write a result to a scene, in place of the one before, and colour it; which objects show is left as it is."""
+    """Write a result to a scene, in place of the one before, and colour it; which objects show is left as it is.
+
+    Work planes keep the values they have where ``readings`` is None.
+    """
     results = scene.luzespecular.results
     results.sky_illuminance = result.light.sky_illuminance
     results.has_sun = result.light.sun_illuminance > 0.0
@@ -80,7 +83,8 @@ def write(
         results_object.write(scene, export, result)
     else:
         results_object.remove(scene)
-    work_planes.write(scene, readings)
+    if readings is not None:
+        work_planes.write(scene, readings)
     recolour(scene)
 
 

@@ -1,8 +1,8 @@
 """Live results: with the transfer ready, another hour, date or sky is solved and shown while one drags.
 
 Requests come in faster than they can be answered: the newest counts, one at a time is solved in a thread of its own,
-and Blender's timer writes what is done. While one drags, reflections stop early; once the settings rest they are
-followed to the end. Frames that are rendered are always solved to the end before they are drawn.
+and Blender's timer writes what is done. While one drags, reflections stop early and work planes are left as they are;
+once the settings rest, all is brought to its end. Frames to be rendered are solved to the end before they are drawn.
 """
 
 from __future__ import annotations
@@ -159,9 +159,11 @@ class Live:
 
     def _start(self, planned: study.Study, quick: bool) -> None:
         solved = planned
-        if quick and planned.solving.get("cycles") is None:
-            tolerance = max(_QUICK_TOLERANCE, planned.solving.get("tolerance", 0.0))
-            solved = replace(planned, solving={**planned.solving, "tolerance": tolerance}, grids=())
+        if quick:
+            solved = replace(planned, grids=())
+            if planned.solving.get("cycles") is None:
+                tolerance = max(_QUICK_TOLERANCE, planned.solving.get("tolerance", 0.0))
+                solved = replace(solved, solving={**planned.solving, "tolerance": tolerance})
         self._quick = quick
         self._job = Job(solved, session.current)
         self._job.start()
@@ -177,7 +179,7 @@ class Live:
         elif self._trusts(job.elapsed) or self._verify():
             self._seconds = job.elapsed
             self._study = replace(job.study, solving=self._study.solving)
-            study.show(scene, job.study, job.result, job.readings)
+            study.show(scene, job.study, job.result, None if self._quick else job.readings)
             _tell("")
 
 

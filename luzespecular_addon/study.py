@@ -171,7 +171,7 @@ def finish(
 
 
 def show(
-    scene: bpy.types.Scene, study: Study, result: luz.Result, readings: Sequence[work_planes.Reading] = ()
+    scene: bpy.types.Scene, study: Study, result: luz.Result, readings: Sequence[work_planes.Reading] | None
 ) -> tuple[Notice, ...]:
     """Write results to meshes and tables and colour them, whatever the viewports show; see `finish`."""
     notices = (*study.notices, *_remarks_of_solver(result))

@@ -32,6 +32,7 @@ ROOMS = (
     "mesh_arrays",
     "notices",
     "operators",
+    "pictures",
     "places",
     "pins",
     "probe",

@@ -1,10 +1,12 @@
 """The headless command: what it writes, says and returns, inside Blender and through its Python module."""
 
 import csv
+import json
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -69,6 +71,63 @@ def test_the_copy_holds_the_results(addon, bpy, saved, tmp_path):
     assert bpy.context.scene.luzespecular.site.hour == 9.0
 
 
+def test_json_holds_all_hours(addon, bpy, saved, tmp_path):
+    out = tmp_path / "saída"
+    status = addon.commands.main(["solve", "--hours", "9,12", "--format", "json", "--out", str(out)])
+    assert status == 0
+    assert [path.name for path in out.iterdir()] == ["casa à luz.json"]
+    content = json.loads((out / "casa à luz.json").read_text(encoding="utf-8"))
+    assert content["scene"] == "Scene"
+    assert [moment["moment"] for moment in content["moments"]] == ["2026-06-22 09:00", "2026-06-22 12:00"]
+    noon = content["moments"][1]
+    assert noon["time"] == "solar"
+    assert noon["sun_altitude"] == pytest.approx(addon.light.sun_place(bpy.context.scene.luzespecular.site).altitude)
+    top = next(row for row in noon["surfaces"] if (row["surface"], row["side"]) == ("Laje", "front"))
+    assert top["mean_lx"] == pytest.approx(10_000.0, rel=1e-3)
+    assert len(noon["faces"]["rows"]) == 8
+    assert noon["balance_lm"]["entering"] > 0
+    assert addon.commands.main(["solve", "--format", "json", "--no-faces", "--out", str(out)]) == 0
+    assert "faces" not in json.loads((out / "casa à luz.json").read_text(encoding="utf-8"))["moments"][0]
+
+
+def test_pictures_show_legend_and_colours(addon, bpy, saved, tmp_path, monkeypatch):
+    monkeypatch.setattr(addon.pictures, "SIZE", (320, 240))
+    blocks = {kind: len(getattr(bpy.data, kind)) for kind in ("scenes", "materials", "worlds", "cameras", "curves")}
+    assert addon.commands.main(["solve", "--format", "png", "--out", str(tmp_path / "out é")]) == 0
+    (picture,) = (tmp_path / "out é").iterdir()
+    assert picture.name == "casa à luz_2026-06-22_12h00.png"
+    assert {kind: len(getattr(bpy.data, kind)) for kind in blocks} == blocks
+    image = bpy.data.images.load(str(picture))
+    assert tuple(image.size) == addon.pictures.SIZE
+    width, height = image.size
+    pixels = np.array(image.pixels[:]).reshape(height, width, 4)[:, :, :3]
+    colours = addon.colours
+    scale = addon.display.current_scale(bpy.context.scene)
+    top = addon.mesh_arrays.read_face_values(bpy.data.objects["Laje"].data, "illuminance", np.float32)[0]
+    shown = colours.scale_colours(scale.name, scale.position(top))
+    assert (np.abs(pixels - shown).max(axis=2) < 0.02).sum() > 1000  # the slab, in its own colour
+    for position in (0.1, 0.5, 0.9):  # and the bar of the legend
+        assert (np.abs(pixels - colours.scale_colours(scale.name, position)).max(axis=2) < 0.02).sum() > 4
+
+
+def test_a_picture_can_be_saved_by_an_operator(addon, bpy, saved, tmp_path):
+    with pytest.raises(RuntimeError, match="no results yet"):
+        bpy.ops.luzespecular.save_picture(filepath=str(tmp_path / "a.png"))
+    bpy.ops.luzespecular.solve()
+    assert bpy.ops.luzespecular.save_picture(filepath=str(tmp_path / "a.png"), width=64, height=64) == {"FINISHED"}
+    assert tuple(bpy.data.images.load(str(tmp_path / "a.png")).size) == (64, 64)
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(RuntimeError, match="could not be"):
+        bpy.ops.luzespecular.save_picture(filepath=str(tmp_path / "file" / "a.png"), width=64, height=64)
+
+
+def test_given_illuminances_are_used_with_every_sky(addon, bpy, saved, tmp_path):
+    arguments = "solve --sky clear --sky-illuminance 4000 --sun-illuminance 0 --no-faces --no-blend --out"
+    assert addon.commands.main([*arguments.split(), str(tmp_path / "out")]) == 0
+    light, _ = addon.light.daylight(bpy.context.scene)
+    assert (light.sky_illuminance, light.sun) == (pytest.approx(4000.0), None)
+
+
 def test_options_reach_the_settings(addon, bpy, saved, tmp_path):
     arguments = "solve --sky cie --cie-type 12 --sky-illuminance 4000 --no-sun --latitude -27 --north 10 --bands 8"
     arguments += " --ground 0.1 --max-area 100 --no-faces --no-blend"
@@ -108,6 +167,7 @@ def test_another_scene_can_be_chosen(addon, bpy, saved, tmp_path):
         ["solve", "--latitude", "91", "--out", "x"],
         ["solve", "--bands", "2", "--out", "x"],
         ["solve", "--sky", "purple", "--out", "x"],
+        ["solve", "--format", "doc", "--out", "x"],
     ],
 )
 def test_wrong_arguments_exit_with_2(addon, bpy, saved, arguments, capsys):
@@ -172,7 +232,7 @@ def test_help_names_every_option(addon, capsys):
         addon.commands.main(["solve", "--help"])
     assert caught.value.code == 0
     said = capsys.readouterr().out
-    for option in ("--hours", "--out", "--north", "--cie-type", "--max-area", "--no-blend"):
+    for option in ("--hours", "--out", "--north", "--cie-type", "--max-area", "--no-blend", "--format", "--error"):
         assert option in said
 
 

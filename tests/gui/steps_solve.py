@@ -4,7 +4,6 @@ import importlib
 from pathlib import Path
 
 import bpy
-
 from driver import PACKAGE
 
 ROOM = Path(__file__).resolve().parents[2] / "examples" / "light_shelf" / "light_shelf.blend"

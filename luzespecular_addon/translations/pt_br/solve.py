@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 OPERATORS = {
+    "Save Picture": "Salvar imagem",
     "Cancel": "Cancelar",
     "Solve": "Calcular",
 }
@@ -35,4 +36,11 @@ TEXTS = {
     "Esc cancels": "Esc cancela",
     "about {seconds:.0f} s left": "faltam cerca de {seconds:.0f} s",
     "about {minutes:.0f} min left": "faltam cerca de {minutes:.0f} min",
+    "Save a picture of the results with their legend as a PNG file, seen from the scene's camera": (
+        "Salvar uma imagem dos resultados com sua legenda em um arquivo PNG, vista da câmera da cena"
+    ),
+    "The picture could not be saved: {error}": "Não foi possível salvar a imagem: {error}",
+    "Width": "Largura",
+    "Height": "Altura",
+    "Pixels": "Pixels",
 }
