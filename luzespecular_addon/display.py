@@ -78,7 +78,7 @@ def write(
     results.has_sun = result.light.sun_illuminance > 0.0
     for own in writeback.own_results(export, result):
         writeback.write(own)
-    session.current.keep_result(scene.name, export, result)
+    results.run = session.current.keep_result(scene.name, export, result)
     if scene.luzespecular.display.view == "RESULTS":
         results_object.write(scene, export, result)
     else:
@@ -97,7 +97,7 @@ def show(scene: bpy.types.Scene) -> None:
 def switch_view(scene: bpy.types.Scene) -> None:
     """Show what the settings ask for now, making the fine faces if they are asked for and still known."""
     if has_results(scene) and scene.luzespecular.display.view == "RESULTS" and not results_object.all_of(scene):
-        kept = session.current.result_of(scene.name)
+        kept = kept_result(scene)
         if kept is not None:
             results_object.write(scene, *kept)
     show(scene)
@@ -118,7 +118,7 @@ def recolour(scene: bpy.types.Scene) -> None:
     pins.attach(scene, shown)
     false_colour.update(scene, scale)
     if scene.luzespecular.display.quantity == "error":
-        errors.find(scene.name, session.current, _errors_found)
+        errors.find(scene, kept_result, _errors_found)
 
 
 def _colour(one: Shown, scale: colours.ColourScale, smooth: bool) -> None:
@@ -160,11 +160,13 @@ def _shown(scene: bpy.types.Scene, object_: bpy.types.Object) -> Shown:
     return Shown(object_, values * np.float32(unit_factor(scene)))
 
 
-def _errors_found(scene_name: str) -> None:
+def kept_result(scene: bpy.types.Scene) -> tuple[Export, luz.Result] | None:
+    """Return the result that a scene shows and what it was solved for, while they are known."""
+    return session.current.result_of(scene.name, scene.luzespecular.results.run)
+
+
+def _errors_found(scene: bpy.types.Scene, kept: tuple[Export, luz.Result]) -> None:
     """Write the errors of the result that is shown, which were still on their way, and show them."""
-    scene, kept = bpy.data.scenes.get(scene_name), session.current.result_of(scene_name)
-    if scene is None or kept is None or not has_results(scene):
-        return
     for own in writeback.own_results(*kept):
         writeback.write(own)
     if results_object.all_of(scene):

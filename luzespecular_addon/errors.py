@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import weakref
 from collections.abc import Callable
 
 import bpy
@@ -10,7 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import core as luz
-from .session import Session
+from .export import Export
+
+Kept = tuple[Export, luz.Result]
+
+_on_their_way: weakref.WeakSet[luz.Result] = weakref.WeakSet()
 
 _TICK = 0.1  # seconds between looks at the thread
 
@@ -20,32 +25,37 @@ def known(result: luz.Result) -> NDArray[np.float64] | None:
     return vars(result).get("error")  # where functools.cached_property keeps them
 
 
-def find(scene_name: str, kept: Session, found: Callable[[str], None]) -> None:
-    """Estimate the errors of the result that is shown in a scene, if it is still there, then call `found`.
+def find(scene: bpy.types.Scene, kept: Callable[[bpy.types.Scene], Kept | None], found: Callable) -> None:
+    """Estimate the errors of the result that a scene shows, if it is still known, then call `found`.
 
     Parameters
     ----------
-    scene_name : str
-    kept : Session
-    found : callable(scene_name)
-        Called on the main thread; at once where there is no window. Not called where the errors are known already.
+    scene : bpy.types.Scene
+    kept : callable(scene) -> (export, result) or None
+        What the scene shows.
+    found : callable(scene, (export, result))
+        Called on the main thread; at once where there is no window. Not called where the errors are known already, or
+        the scene shows another result by then.
     """
-    shown = kept.result_of(scene_name)
-    if shown is None or known(shown[1]) is not None:
+    shown = kept(scene)
+    if shown is None or known(shown[1]) is not None or shown[1] in _on_their_way:
         return
-    _, result = shown
+    result, name = shown[1], scene.name
     if bpy.app.background:
         result.error  # noqa: B018 - estimated by the asking, and kept
-        found(scene_name)
+        found(scene, shown)
         return
     thread = threading.Thread(target=lambda: result.error, name="LuzEspecular errors", daemon=True)
 
     def look() -> float | None:
         if thread.is_alive():
             return _TICK
-        if known(result) is not None and kept.result_of(scene_name) == shown:
-            found(scene_name)
+        _on_their_way.discard(result)
+        now = bpy.data.scenes.get(name)
+        if now is not None and known(result) is not None and (kept(now) or (None, None))[1] is result:
+            found(now, shown)
         return None
 
+    _on_their_way.add(result)
     thread.start()
     bpy.app.timers.register(look, first_interval=_TICK)

@@ -20,7 +20,8 @@ class Session:
     def __init__(self):
         self._key: Hashable = None
         self._transfer: luz.Transfer | None = None
-        self._result: tuple[str, Export, luz.Result] | None = None
+        self._result: tuple[tuple[str, int], Export, luz.Result] | None = None
+        self._runs = 0
 
     def get(self, key: Hashable) -> luz.Transfer | None:
         """Return the transfer prepared for the same geometry, materials and options, if it is the one kept."""
@@ -34,14 +35,23 @@ class Session:
         """Let go of the transfer and the result, and their memory."""
         self._key = self._transfer = self._result = None
 
-    def result_of(self, scene_name: str) -> tuple[Export, luz.Result] | None:
-        """Return the result shown in a scene and what it was solved for, if it is the one kept."""
-        kept = self._result
-        return kept[1:] if kept is not None and kept[0] == scene_name else None
+    def result_of(self, scene_name: str, run: int) -> tuple[Export, luz.Result] | None:
+        """Return the result that a scene shows and what it was solved for, if it is the one kept.
 
-    def keep_result(self, scene_name: str, export: Export, result: luz.Result) -> None:
-        """Keep the result shown in a scene in place of the one before."""
-        self._result = (scene_name, export, result)
+        Parameters
+        ----------
+        scene_name : str
+        run : int
+            What `keep_result` returned when the result was shown; after an undo it is that of an earlier one.
+        """
+        kept = self._result
+        return kept[1:] if kept is not None and kept[0] == (scene_name, run) else None
+
+    def keep_result(self, scene_name: str, export: Export, result: luz.Result) -> int:
+        """Keep the result that a scene shows in place of the one before; return a number that tells it from others."""
+        self._runs += 1
+        self._result = ((scene_name, self._runs), export, result)
+        return self._runs
 
     def forget_result(self) -> None:
         """Let go of the result."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from .. import core as luz
 from ..core import tables
-from . import errors, mesh_arrays, participants
+from . import errors, mesh_arrays, participants, placements
 from .choices import QUANTITY_ITEMS
 from .export import Export, ExportedSurface
 from .notices import Notice
@@ -60,11 +60,20 @@ class OwnResults:
 
 
 def refusals(objects: Iterable[bpy.types.Object]) -> list[Notice]:
-    """Return an error for each mesh that holds an attribute of ours by name that we did not write."""
+    """Return an error for each mesh that results cannot be written to.
+
+    It holds an attribute of ours by name that we did not write, or it is a work plane's and not its alone.
+    """
     notices = []
     for object_ in objects:
         mesh = object_.data
-        if object_.type != "MESH" or holds_results(mesh) or not participants.takes_part(object_):
+        is_plane = object_.luzespecular.plane.enabled
+        if object_.type != "MESH" or not (is_plane or participants.takes_part(object_)):
+            continue
+        if is_plane and not placements.holds_own_results(object_):
+            text = rpt_("Work plane '{name}' shares its mesh or is linked: use Object > Relations > Make Single User")
+            notices.append(Notice("ERROR", text.format(name=object_.name)))
+        if holds_results(mesh):
             continue
         for name in ATTRIBUTES:
             if name in mesh.attributes:

@@ -145,7 +145,9 @@ def _side_name(row: bpy.types.PropertyGroup) -> str:
 
 
 def _draw_table(layout: bpy.types.UILayout, results: bpy.types.PropertyGroup) -> None:
-    _draw_columns(layout, iface_("Surface [lx]"), iface_("Min"), iface_("Mean"), iface_("Max"))
+    row = layout.row()
+    _draw_columns(row, iface_("Surface [lx]"), iface_("Min"), iface_("Mean"), iface_("Max"))
+    row.label(text="", icon="BLANK1")  # as wide as the list's scroll bar
     layout.template_list("LUZESPECULAR_UL_surfaces", "", results, "rows", results, "active_row", rows=5)
     if 0 <= results.active_row < len(results.rows):
         chosen = results.rows[results.active_row]

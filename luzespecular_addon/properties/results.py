@@ -174,6 +174,7 @@ class LuzResults(bpy.types.PropertyGroup):
     shadings: CollectionProperty(type=LuzShading)
     legend_low: FloatProperty()
     legend_high: FloatProperty()
+    run: IntProperty()
     sky_illuminance: FloatProperty()
     has_sun: BoolProperty()
     pins: CollectionProperty(type=LuzPin)

@@ -115,13 +115,22 @@ def test_errors_are_estimated_when_asked_for(addon, bpy, solved):
     part = fine(addon, bpy)
     assert "illuminance_error" not in part.data.attributes
     solved.display.quantity = "error"
-    result = addon.session.current.result_of(bpy.context.scene.name)[1]
+    result = addon.display.kept_result(bpy.context.scene)[1]
     front = values(addon, part, "illuminance_error")
     assert np.isin(front, result.error.astype(np.float32)).all()
     assert 0.0 < front.max() < 1_000.0
     assert (shown(addon, addon.results_object.find(bpy.context.scene, "back")) == -1.0).all()  # errors of fronts only
     own = values(addon, bpy.data.objects["Floor"], "illuminance_error")
     assert front.min() <= own[0] <= front.max()
+
+
+def test_errors_of_another_run_are_not_mixed_in(addon, bpy, solved):
+    scene = bpy.context.scene
+    assert addon.display.kept_result(scene) is not None
+    solved.results.run -= 1  # as after an undo
+    solved.display.quantity = "error"
+    assert "illuminance_error" not in fine(addon, bpy).data.attributes
+    assert (shown(addon, fine(addon, bpy)) == -1.0).all()
 
 
 # --- fine faces if asked ---------------------------------------------------------------------------------------------
@@ -323,5 +332,5 @@ def test_clear_takes_all_ways_of_seeing_away(addon, bpy, make):
     assert sorted(a.name for a in plane.data.attributes) == plane_before
     assert plane.luzespecular.plane.state == ""
     assert not scene.luzespecular.is_property_set("results")
-    assert addon.session.current.result_of(scene.name) is None
+    assert addon.display.kept_result(scene) is None
     assert not addon.display.has_results(scene)

@@ -107,7 +107,7 @@ def lux(addon, object_):
 
 
 def test_points_are_read_where_they_are(addon, bpy, plane):
-    result = addon.session.current.result_of(bpy.context.scene.name)[1]
+    result = addon.display.kept_result(bpy.context.scene)[1]
     points = addon.mesh_arrays.polygon_centres(plane.data)
     assert len(points) == 16
     assert points[:, 2] == pytest.approx(0.75)
@@ -188,6 +188,23 @@ def test_refusals_name_the_remedy(addon, bpy, make):
     assert addon.work_planes.all_of(bpy.context.scene) == []
 
 
+def test_planes_that_share_a_mesh_are_refused(addon, bpy, make, plane):
+    make.object("Second", plane.data).luzespecular.plane.enabled = True
+    with pytest.raises(RuntimeError, match="Make Single User"):
+        bpy.ops.luzespecular.solve()
+
+
+def test_attributes_of_the_users_own_grid_are_not_overwritten(addon, bpy, make):
+    make.square("Floor")
+    own = make.square("My grid", size=0.5, height=0.4)
+    own.luzespecular.plane.enabled = True
+    own.data.attributes.new("illuminance", "FLOAT", "FACE").data[0].value = 7.0
+    make.quick()
+    with pytest.raises(RuntimeError, match="'My grid' has an attribute 'illuminance'"):
+        bpy.ops.luzespecular.solve()
+    assert lux(addon, own)[0] == 7.0
+
+
 def test_points_are_saved(addon, bpy, plane, tmp_path):
     path = tmp_path / "pontos à mesa.csv"
     assert bpy.ops.luzespecular.save_work_planes(filepath=str(path)) == {"FINISHED"}
@@ -200,7 +217,7 @@ def test_points_are_saved(addon, bpy, plane, tmp_path):
 
 
 def test_reading_can_be_cancelled(addon, bpy, plane):
-    result = addon.session.current.result_of(bpy.context.scene.name)[1]
+    result = addon.display.kept_result(bpy.context.scene)[1]
     grids = addon.work_planes.grids(bpy.context.scene, 1.0)
     with pytest.raises(addon.luz.Cancelled):
         addon.work_planes.read(result, grids, lambda *_: False)

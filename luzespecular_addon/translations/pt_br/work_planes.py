@@ -37,6 +37,10 @@ TEXTS = {
         "Salvar os pontos de todos os planos de trabalho e sua iluminância em um arquivo CSV"
     ),
     "No work plane has been read yet: solve first": "Nenhum plano de trabalho foi lido ainda: calcule antes",
+    "Work plane '{name}' shares its mesh or is linked: use Object > Relations > Make Single User": (
+        "O plano de trabalho '{name}' compartilha sua malha ou é vinculado: "
+        "use Objeto > Relações > Tornar usuário único"
+    ),
     "Not read yet: solve": "Ainda não lido: calcule",
     "Moved or edited since: solve again": "Movido ou editado desde então: calcule de novo",
     "Use {name}": "Usar {name}",
