@@ -137,11 +137,11 @@ class Annual:
             if surface is not None:
                 raise SceneError("These are free points, of no surface; leave out its name")
             return np.arange(len(self.lux_hours)), np.ones(len(self.lux_hours))
-        cuts, names = self.transfer.geometry.fracture, self.transfer.geometry.planes.surfaces
-        if surface not in names:
-            raise SceneError(f"There is no surface '{surface}'; name one of: {', '.join(names[:20])}")
-        rows = np.flatnonzero(cuts.face_surface == names.index(surface))
-        return rows, cuts.face_areas[rows]
+        geometry = self.transfer.geometry
+        if surface is None:
+            raise SceneError(f"Name a surface, one of: {', '.join(geometry.planes.surfaces[:20])}")
+        rows = geometry.faces_of(surface)
+        return rows, geometry.fracture.face_areas[geometry.reported[rows]]
 
 
 def count_hours(transfer: Transfer, block: Block, hours: np.ndarray, limits: Iterable[float], of_faces: bool) -> Annual:

@@ -18,9 +18,6 @@ from .result import checked_points
 from .stages import Progress, Recorder, Stage
 from .transfer import Transfer
 
-SUN_SPACING = 3.0
-"""Degrees between the positions of the Sun that are followed where the user says nothing."""
-
 _BLOCK_BYTES = 64e6
 _LIGHTS = 64
 _SKY_STEP = 1.5
@@ -185,7 +182,7 @@ def _check_memory(transfer: Transfer, lights: Lights, places: Places | None, mem
     if memory is None:
         return
     targets, suns, count = transfer.geometry.targets, len(lights.suns), len(lights.daylights)
-    receivers = len(transfer.geometry.fracture.faces) if places is None else len(places.points)
+    receivers = len(transfer.geometry.reported) if places is None else len(places.points)
     columns = targets.columns + suns
     needed = 4.0 * columns * (max(len(transfer.nodes.points), receivers * (places is not None)) + count)
     needed += 8.0 * suns * (receivers + targets.patches.count) + 24.0 * targets.patches.count**2

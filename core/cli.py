@@ -91,6 +91,7 @@ def parser() -> argparse.ArgumentParser:
     add("--cycles", type=int, metavar="N", help="diffuse reflections (default: all that count)")
     add("--threads", type=int, metavar="N", help="default: as many as there are cores")
     add("--memory", type=float, metavar="GB", help="refuse what needs more")
+    add("--receivers", action="append", metavar="NAME", help="a surface whose faces are wanted (again for more)")
     add("--cache", type=Path, metavar="FILE", help="keep what takes long there, and use it where it still holds")
     add(
         "--format",
@@ -153,6 +154,7 @@ def _solve(options: argparse.Namespace) -> None:
             max_area=options.max_area,
             threads=options.threads,
             memory=None if options.memory is None else 1e9 * options.memory,
+            receivers=options.receivers,
             cache=options.cache,
             progress=progress,
         )

@@ -99,12 +99,14 @@ def weighted(weights: Weights, some: slice, values: np.ndarray) -> np.ndarray:
 def face_weights(transfer: Transfer) -> Weights:
     """Means over the faces' fronts from values at the nodes."""
     cuts, weights = transfer.geometry.fracture, transfer.nodes.weights
-    faces, element = len(cuts.faces), weights.rows
+    reported, element = transfer.geometry.reported, weights.rows
+    place = np.full(cuts.sides, -1)
+    place[reported] = np.arange(len(reported))
     area = np.bincount(cuts.element_side, weights=cuts.element_areas, minlength=cuts.sides)
     side = cuts.element_side[element]
     share = weights.weight * cuts.element_areas[element] / area[side]
-    front = side < faces
-    return Weights.of(side[front], weights.node[front], share[front], faces)
+    mine = place[side] >= 0
+    return Weights.of(place[side[mine]], weights.node[mine], share[mine], len(reported))
 
 
 def find_coefficients(
@@ -134,7 +136,7 @@ def find_coefficients(
     looked = None if places is None else _look(transfer, places)
     seen = _seen(transfer.sky_direct) | _seen(transfer.sky_specular)
     parcels = np.flatnonzero(seen if looked is None else seen | _seen(looked[0]))
-    receivers = len(geometry.fracture.faces) if places is None else len(places.points)
+    receivers = len(geometry.reported) if places is None else len(places.points)
     by_sun = np.zeros((2, len(suns), receivers), np.float32)
     on_patches = np.zeros((geometry.targets.patches.count, len(suns)), np.float32)
     stays = _Stays(transfer)
@@ -148,7 +150,9 @@ def find_coefficients(
         on_patches[:, one] = means_over_patches(geometry, direct + by_mirrors)
         lumens[one] = stays.elements @ (direct + by_mirrors)
         if places is None:
-            by_sun[:, one] = [geometry.fracture.side_means(values)[:receivers] for values in (direct, by_mirrors)]
+            by_sun[:, one] = [
+                geometry.fracture.side_means(values)[geometry.reported] for values in (direct, by_mirrors)
+            ]
         else:
             by_sun[:, one] = light_points(geometry.outlines, sunlight.beams, places.points, places.normals)
 
@@ -250,7 +254,7 @@ def _look(transfer: Transfer, places: Places) -> tuple[np.ndarray, np.ndarray]:
 
 def _steady(transfer: Transfer, places: Places | None) -> np.ndarray:
     """(r,) float: illuminance by luminous surfaces alone."""
-    count = len(transfer.geometry.fracture.faces) if places is None else len(places.points)
+    count = len(transfer.geometry.reported) if places is None else len(places.points)
     if not any(material.exitance > 0 for material in transfer.geometry.surface_materials):
         return np.zeros(count)
     dark = transfer.solve(Daylight())

@@ -269,7 +269,9 @@ class Fracture:
         return mean / area
 
 
-def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None, times: float = 1.0) -> Fracture:
+def fracture(
+    planes: Planes, cut, reflects, two_sided, max_area: float | None, times: float = 1.0, wanted=True
+) -> Fracture:
     """Cut the scene's planes into faces and elements.
 
     Parameters
@@ -284,6 +286,8 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None, t
         Largest area of a face [m²]; None = chosen for the scene; inf = faces as given, only triangulated.
     times : float
         How many times as many faces and elements as usual, where the number is chosen here.
+    wanted : (surfaces,) bool, or True for all
+        Surfaces whose faces are reported; others' are not cut. Faces are of the size that they would have with all.
 
     Returns
     -------
@@ -299,6 +303,7 @@ def fracture(planes: Planes, cut, reflects, two_sided, max_area: float | None, t
     is_cut = np.asarray(cut)[surface]
     total = piece_areas[is_cut].sum()
     limit = total / (DEFAULT_FACES * times) if max_area is None else max_area
+    is_cut &= np.broadcast_to(wanted, len(planes.surfaces))[surface]
     limits = np.where(is_cut, limit if total else math.inf, math.inf)
     _check_count(planes, is_cut, limits, total)
     faces = cut_pieces(planes.given, planes.given_counts, limits)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from .errors import SceneError
 from .fracture import Fracture, fracture
 from .gather import Targets
 from .globe import Globe
@@ -32,6 +34,8 @@ class Geometry:
     targets : Targets
     outlines : Outlines
     surface_materials : list of Material, one per surface
+    wanted : (surfaces,) bool
+        Whose faces are reported.
     element_normals : (e, 3) float
     element_points : (e, 3) float, relative to the scene's centre
     """
@@ -42,8 +46,32 @@ class Geometry:
     targets: Targets
     outlines: Outlines
     surface_materials: list
+    wanted: np.ndarray
     element_normals: np.ndarray
     element_points: np.ndarray
+
+    @cached_property
+    def reported(self) -> np.ndarray:
+        """(f,) int: faces that results hold."""
+        return np.flatnonzero(self.wanted[self.fracture.face_surface])
+
+    def faces_of(self, name: str) -> np.ndarray:
+        """(k,) int: a surface's faces among the reported ones.
+
+        Raises
+        ------
+        SceneError
+            Where no surface has this name, or its faces were not wanted.
+        """
+        surfaces = self.planes.surfaces
+        if name not in surfaces:
+            raise SceneError(
+                f"There is no surface '{name}' in this result; its surfaces are: {', '.join(surfaces[:20])}"
+            )
+        number = surfaces.index(name)
+        if not self.wanted[number]:
+            raise SceneError(f"Faces of '{name}' were not computed: prepare with it among the receivers")
+        return np.flatnonzero(self.fracture.face_surface[self.reported] == number)
 
     @property
     def element_surface(self) -> np.ndarray:
@@ -78,10 +106,18 @@ class Geometry:
         return replace(self, outlines=replace(self.outlines, materials=of_outlines), surface_materials=materials)
 
 
-def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | None, times: float = 1.0) -> Geometry:
+def make_geometry(
+    scene: Scene,
+    planes: Planes,
+    globe: Globe,
+    max_area: float | None,
+    times: float = 1.0,
+    receivers: Collection[str] | None = None,
+) -> Geometry:
     """Cut planes into faces, elements and patches, and list the outlines with their materials.
 
-    ``times`` as many faces and patches as usual are made, where the user gives no ``max_area``.
+    ``times`` as many faces and patches as usual are made, where the user gives no ``max_area``. Surfaces that
+    are none of the ``receivers`` are cut into no faces.
     """
     surfaces = list(scene.surfaces.values())
     reflects = np.array([s.material.diffuse_reflectance > 0 for s in surfaces])
@@ -89,7 +125,8 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
     # light that a black luminous surface receives goes nowhere: cut it only where the user says how fine
     cut = reflects | (emits & (max_area is not None))
     two_sided = np.array([s.two_sided for s in surfaces])
-    cuts = fracture(planes, cut, reflects, two_sided, max_area, times)
+    wanted = np.array([receivers is None or s.name in receivers for s in surfaces])
+    cuts = fracture(planes, cut, reflects, two_sided, max_area, times, wanted)
     points = cuts.elements.mean(axis=1)
     fronts = len(planes.sheet_surface)
     surface = planes.sheet_surface[cuts.element_sheet % fronts]
@@ -118,6 +155,7 @@ def make_geometry(scene: Scene, planes: Planes, globe: Globe, max_area: float | 
         Targets.of(planes, patches, globe),
         outlines,
         [s.material for s in surfaces],
+        wanted,
         normals,
         points,
     )

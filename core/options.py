@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,16 +25,19 @@ class Options:
         [m²]
     specular_cutoff : float
     accuracy : float or None
+    receivers : tuple of str or None
+        Surfaces whose faces are wanted; None = all.
     """
 
     bands: int = 60
     max_area: float | None = None
     specular_cutoff: float = 1e-3
     accuracy: float | None = None
+    receivers: tuple[str, ...] | None = None
 
     @classmethod
-    def checked(cls, *, bands, max_area, specular_cutoff, accuracy) -> Options:
-        """Return the options as plain numbers.
+    def checked(cls, scene: Scene, *, bands, max_area, specular_cutoff, accuracy, receivers) -> Options:
+        """Return the options as plain numbers and names.
 
         Raises
         ------
@@ -52,7 +56,20 @@ class Options:
             accuracy = _positive("accuracy", accuracy)
             if not 1e-3 <= accuracy <= 0.2:
                 raise SceneError(f"accuracy is {accuracy:g}; give a relative error from 0.001 to 0.2 (0.01 is usual)")
-        return cls(bands=int(bands), max_area=max_area, specular_cutoff=cutoff, accuracy=accuracy)
+        names = None if receivers is None else _checked_names(scene, receivers)
+        return cls(bands=int(bands), max_area=max_area, specular_cutoff=cutoff, accuracy=accuracy, receivers=names)
+
+
+def _checked_names(scene: Scene, receivers) -> tuple[str, ...]:
+    """Names of surfaces, in the scene's order."""
+    if isinstance(receivers, str) or not isinstance(receivers, Iterable):
+        raise SceneError(f"receivers must be a list of names of surfaces, not {receivers!r}")
+    wanted = list(receivers)
+    unknown = [name for name in wanted if name not in scene.surfaces]
+    if unknown or not wanted:
+        what = f"there is no surface {unknown[0]!r}" if unknown else "the list is empty"
+        raise SceneError(f"receivers: {what}; name some of: {', '.join(list(scene.surfaces)[:20])}")
+    return tuple(name for name in scene.surfaces if name in wanted)
 
 
 def checked_scene(scene) -> Scene:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from .inspection import inspect, refuse
 from .options import Options, checked_memory, checked_scene, checked_threads
 from .planes import find_planes
 from .scene import Scene
+from .skips import needless
 from .specular import ChainLimits, exact_mirrors
 from .stages import Progress, Recorder, Stage
 from .store import load_transfer
@@ -35,6 +37,7 @@ def prepare(
     threads: int | None = None,
     memory: float | None = None,
     accuracy: float | None = None,
+    receivers: Iterable[str] | None = None,
     reuse: Transfer | None = None,
     cache: str | Path | None = None,
     progress: Progress | None = None,
@@ -59,6 +62,9 @@ def prepare(
         Relative error that about 95 of 100 faces shall keep below, 0.001 to 0.2 (see `Result.error`). Bands, receivers,
         patches and, where ``max_area`` is not given, faces are then chosen for it from a trial solution; ``bands`` has
         no meaning.
+    receivers : iterable of str, optional
+        Surfaces whose faces are wanted; results know these alone. The others take part in the interreflection, cut no
+        finer than it needs. Default: all.
     reuse : Transfer, optional
         An earlier one, whose form factors are kept where they hold (see `Transfer.with_materials`); where they do not,
         the scene is prepared anew, and ``stages`` say why.
@@ -81,7 +87,14 @@ def prepare(
         Where ``progress`` says so.
     """
     checked_scene(scene)
-    options = Options.checked(bands=bands, max_area=max_area, specular_cutoff=specular_cutoff, accuracy=accuracy)
+    options = Options.checked(
+        scene,
+        bands=bands,
+        max_area=max_area,
+        specular_cutoff=specular_cutoff,
+        accuracy=accuracy,
+        receivers=receivers,
+    )
     threads, memory, cache = checked_threads(threads), checked_memory(memory), _checked_cache(cache)
     recorder = Recorder(progress)
     kept = _kept(scene, options, threads, reuse, cache, recorder)
@@ -192,7 +205,7 @@ def _prepared(
         findings = inspect(scene, planes)
         refuse(findings)
     with recorder.stage("fracture", 0.01):
-        geometry = make_geometry(scene, planes, globe, options.max_area, times)
+        geometry = make_geometry(scene, planes, globe, options.max_area, times, options.receivers)
     limits = ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines))
     _check_memory(geometry, memory)
     with recorder.stage(LOOKING, 0.02):
@@ -203,15 +216,16 @@ def _prepared(
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
         exchange = Exchange(patch_factors, spread, conservation.missing)
-    if not geometry.outlines.any_specular:
-        recorder.skip("specular chains", "no surface mirrors or transmits regularly")
+    sees_out = bool(gathered.sky_direct.any() or gathered.sky_specular.any())
+    for name, why in needless(geometry, sees_out):
+        recorder.skip(name, why)
     recorder.report(1.0, "prepared")
     specular_rows = np.flatnonzero(gathered.specular_rows)
     deep_rows = np.array(sorted(gathered.deep), np.int64)
     return Transfer(
         geometry=geometry,
         form_factors=gathered.form_factors,
-        sky_direct=gathered.sky_direct,
+        sky_direct=gathered.sky_direct if sees_out else _nothing(gathered.sky_direct),
         sky_specular=gathered.sky_specular[specular_rows]
         if len(specular_rows)
         else np.zeros((0, geometry.targets.columns), np.float32),
@@ -234,6 +248,11 @@ def _prepared(
         stages=tuple(recorder.stages),
         findings=findings,
     )
+
+
+def _nothing(matrix: np.ndarray) -> np.ndarray:
+    """Zeros of a matrix's shape that take no memory."""
+    return np.broadcast_to(matrix.dtype.type(0), matrix.shape)
 
 
 def _check_memory(geometry: Geometry, memory: float | None) -> None:

@@ -78,7 +78,7 @@ class Result:
     @classmethod
     def of(cls, transfer: Transfer, light: Daylight, sky, sunlight: Sunlight, field: Field, stages) -> Result:
         """Take element values together to faces."""
-        cuts, planes = transfer.geometry.fracture, transfer.geometry.planes
+        cuts, planes, reported = transfer.geometry.fracture, transfer.geometry.planes, transfer.geometry.reported
         faces = len(cuts.faces)
         means = {name: cuts.side_means(values) for name, values in field.components.items()}
         total = np.sum(list(means.values()), axis=0)
@@ -87,25 +87,33 @@ class Result:
             surface = planes.surfaces[cuts.face_surface[worst if worst < faces else cuts.back_of[worst - faces]]]
             raise ArithmeticError(f"Illuminance on '{surface}' is not finite; please report this scene")
         materials = transfer.geometry.surface_materials
-        reflectance = np.array([m.diffuse_reflectance for m in materials])[cuts.face_surface]
-        emitted = np.array([m.exitance for m in materials])[cuts.face_surface]
-        centroids = cuts.faces.mean(axis=1) + planes.centre
+        reflectance = np.array([m.diffuse_reflectance for m in materials])[cuts.face_surface][reported]
+        emitted = np.array([m.exitance for m in materials])[cuts.face_surface][reported]
+        centroids = cuts.faces[reported].mean(axis=1) + planes.centre
 
         def side(parts: dict[str, np.ndarray], normals: np.ndarray) -> Side:
             illuminance = np.sum(list(parts.values()), axis=0)
             initial = np.sum([parts[name] for name in INITIAL], axis=0)
             return Side(
-                illuminance, initial, emitted + reflectance * illuminance, parts, centroids, normals, cuts.face_areas
+                illuminance,
+                initial,
+                emitted + reflectance * illuminance,
+                parts,
+                centroids,
+                normals,
+                cuts.face_areas[reported],
             )
 
-        front = side({name: values[:faces] for name, values in means.items()}, cuts.face_normals)
+        normals = cuts.face_normals[reported]
+        front = side({name: values[reported] for name, values in means.items()}, normals)
         back = None
-        if len(cuts.back_of):
+        if np.isin(cuts.back_of, reported).any():
             parts = {}
             for name, values in means.items():
                 parts[name] = np.full(faces, np.nan)
                 parts[name][cuts.back_of] = values[faces:]
-            back = side(parts, -cuts.face_normals)
+                parts[name] = parts[name][reported]
+            back = side(parts, -normals)
         return cls(transfer, light, sky, sunlight, field, front, back, (*transfer.stages, *stages))
 
     @property
@@ -146,26 +154,27 @@ class Result:
     @property
     def vertices(self) -> np.ndarray:
         """(n, 3, 3) float: corners of the faces [m]."""
-        return self.transfer.geometry.fracture.faces + self.transfer.geometry.planes.centre
+        geometry = self.transfer.geometry
+        return geometry.fracture.faces[geometry.reported] + geometry.planes.centre
 
     @property
     def source_faces(self) -> np.ndarray:
         """(n,) int: for each face the index of the face given to `Scene.add` that it is a part of."""
-        return self.transfer.geometry.fracture.face_source
+        return self.transfer.geometry.fracture.face_source[self.transfer.geometry.reported]
 
     @property
     def surfaces(self) -> list[str]:
-        """Names of the surfaces."""
-        return list(self.transfer.geometry.planes.surfaces)
+        """Names of the surfaces whose faces it holds."""
+        geometry = self.transfer.geometry
+        return [name for name, wanted in zip(geometry.planes.surfaces, geometry.wanted, strict=True) if wanted]
 
     @cached_property
     def error(self) -> np.ndarray:
         """(n,) float: estimate of what 95 of 100 faces' errors are below [lx]; see docs/method.md."""
         from .solve import estimate_errors
 
-        cuts = self.transfer.geometry.fracture
         errors = estimate_errors(self.transfer, self.light, self.sky, self.field)
-        return cuts.side_means(errors)[: len(cuts.faces)]
+        return self.transfer.geometry.fracture.side_means(errors)[self.transfer.geometry.reported]
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -178,14 +187,9 @@ class Result:
         Raises
         ------
         SceneError
-            Where no surface has this name.
+            Where no surface has this name, or its faces were not wanted.
         """
-        surfaces = self.transfer.geometry.planes.surfaces
-        if name not in surfaces:
-            raise SceneError(
-                f"There is no surface '{name}' in this result; its surfaces are: {', '.join(surfaces[:20])}"
-            )
-        return np.flatnonzero(self.transfer.geometry.fracture.face_surface == surfaces.index(name))
+        return self.transfer.geometry.faces_of(name)
 
     def mean(self, name: str) -> float:
         """Area-weighted mean illuminance of a surface's front [lx]; `SceneError` for an unknown name."""

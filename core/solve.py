@@ -80,7 +80,9 @@ def solve_light(
     }
 
     sky = sky_column(geometry.targets, light)
-    if sky.any():
+    if not transfer.sees_out:
+        recorder.skip("sky", "nothing sees the sky or the ground")
+    elif sky.any():
         with recorder.stage("sky", 0.0):
             mirrored = np.zeros(len(transfer.nodes.points))
             mirrored[transfer.specular_rows] = np.pi * product(transfer.sky_specular, sky)
@@ -106,6 +108,8 @@ def solve_light(
                 geometry, sun, transfer.limits.cutoff, lambda: recorder.report(0.05, "sun")
             )
             components["sun_direct"], components["sun_specular"] = on_elements
+        if not sunlight.patches:
+            recorder.skip("sun patches", "the Sun reaches no side that receives")
 
     reflectance, emitted = patch_properties(geometry)
     if geometry.targets.patches.count == 0:

@@ -29,7 +29,7 @@ from .stages import Stage
 from .transfer import Transfer
 from .writing import complete
 
-FORMAT = 1
+FORMAT = 2
 """Raised with every change of what files hold or of how it is found."""
 
 _ARRAYS = (
@@ -105,7 +105,7 @@ def load_transfer(path, scene: Scene, options: Options | None, threads: int) -> 
             header = _header(content["header"])
             if header["format"] != FORMAT:
                 raise TransferFileError(f"'{path}' was saved by another version of the program; {remedy}")
-            kept = Options(**header["fingerprint"]["options"])
+            kept = _options(header["fingerprint"]["options"])
             known = Fingerprint(asdict(kept), tuple(map(tuple, header["fingerprint"]["surfaces"])))
             difference = known.difference(Fingerprint.of(scene, options or kept))
             if difference:
@@ -125,6 +125,11 @@ def _header(content: np.ndarray) -> dict[str, Any]:
     return header
 
 
+def _options(given: dict[str, Any]) -> Options:
+    names = given["receivers"]
+    return Options(**{**given, "receivers": None if names is None else tuple(names)})
+
+
 def _sizes(geometry: Geometry) -> list[int]:
     """What rebuilt geometry must agree in."""
     return [
@@ -141,7 +146,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
     times = float(header["times"])
     globe = Globe(int(header["bands"]))
     planes = find_planes(scene)
-    geometry = make_geometry(scene, planes, globe, options.max_area, times)
+    geometry = make_geometry(scene, planes, globe, options.max_area, times, options.receivers)
     if header["sizes"] != _sizes(geometry):
         raise ValueError("the scene is cut otherwise now")
     lattice = Nodes.of(geometry.fracture, geometry.lattices)

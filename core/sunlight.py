@@ -231,6 +231,13 @@ def _shadow(outlines, pieces, blocker, outline, upstream, plane, beam, cosine):
         for normal, offset in zip(walls[0], offsets[0], strict=True):
             if not normal.any():
                 continue
+            height = inside @ normal - offset
+            if height.min() >= 0:
+                continue
+            if height.max() <= 0:
+                left.append((inside, factors))
+                inside, factors = inside[:0], factors[:0]
+                break
             outside = polygons.clip(inside, -normal, -offset)
             keep = wide(outside, outlines.tolerance)
             if keep.any():
@@ -325,16 +332,33 @@ def lit_share(triangles, polygon) -> np.ndarray:
     length = np.linalg.norm(inward, axis=1)
     true = length > _ROUNDING * length.max()
     inward, start = inward[true] / length[true, None], polygon[true]
-    distance = np.einsum("ntc,ec->nte", triangles, inward) - np.einsum("ec,ec->e", inward, start)
+    offset = np.einsum("ec,ec->e", inward, start)
+    near = _around(triangles, polygon)
+    distance = triangles[near].reshape(-1, 3) @ inward.T - offset
+    distance = distance.reshape(len(near), 3, len(inward))
     inside = (distance >= 0).all(axis=(1, 2))
-    cut = np.flatnonzero(~inside & (distance > 0).any(axis=1).all(axis=1))
-    share = inside.astype(float)
+    cut = near[~inside & (distance > 0).any(axis=1).all(axis=1)]
+    share = np.zeros(len(triangles))
+    share[near[inside]] = 1.0
     if len(cut):
         part = triangles[cut]
         for n, p in zip(inward, start, strict=True):
             part = polygons.clip(part, n, float(n @ p))
         share[cut] = polygons.areas(part) / polygons.areas(triangles[cut])
     return share
+
+
+def _around(triangles, polygon) -> np.ndarray:
+    """(k,) int: triangles that may lie within a polygon, by the boxes that bound them."""
+    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    rounding = 1e-6 * (high - low).max()
+    low, high = low - rounding, high + rounding
+    near = np.ones(len(triangles), bool)
+    for axis in range(3):
+        places = triangles[:, :, axis]
+        a, b, c = places[:, 0], places[:, 1], places[:, 2]
+        near &= (np.maximum(np.maximum(a, b), c) >= low[axis]) & (np.minimum(np.minimum(a, b), c) <= high[axis])
+    return np.flatnonzero(near)
 
 
 def light_points(outlines: Outlines, beams: list[Beam], points, normals) -> tuple[np.ndarray, np.ndarray]:

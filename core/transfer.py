@@ -103,6 +103,11 @@ class Transfer:
         """A coarser look from some of the nodes, for those who ask for errors; found when first asked for."""
         return make_trial(self.geometry, self.nodes, self.limits, self.threads)
 
+    @cached_property
+    def sees_out(self) -> bool:
+        """Whether any receiver sees anything of the sky or the ground, straight or by mirrors."""
+        return bool(self.sky_direct.any() or self.sky_specular.any())
+
     def on_elements(self, values: np.ndarray) -> np.ndarray:
         """Values on the elements ``(e,)`` from values at the nodes ``(m,)``."""
         return self.nodes.on_elements(values)
@@ -149,7 +154,7 @@ class Transfer:
         *,
         points=None,
         normals=None,
-        sun_spacing: float = 3.0,
+        sun_spacing: float = 4.0,
         memory: float | None = None,
         progress: Progress | None = None,
     ) -> np.ndarray:
@@ -207,7 +212,7 @@ class Transfer:
         limits: Iterable[float] | None = None,
         points=None,
         normals=None,
-        sun_spacing: float = 3.0,
+        sun_spacing: float = 4.0,
         memory: float | None = None,
         progress: Progress | None = None,
     ) -> Annual:

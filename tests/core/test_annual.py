@@ -136,6 +136,7 @@ def test_hours_that_do_not_fit_are_refused(transfer, day, hours):
 
 def test_unknown_surfaces_are_refused(transfer, day):
     year = transfer.annual(day)
-    for name in ("roof", None):
-        with pytest.raises(luz.SceneError, match="name one of: floor"):
-            year.spatial_daylight_autonomy(name)
+    with pytest.raises(luz.SceneError, match="no surface 'roof'"):
+        year.spatial_daylight_autonomy("roof")
+    with pytest.raises(luz.SceneError, match="Name a surface, one of: floor"):
+        year.spatial_daylight_autonomy()

@@ -164,6 +164,13 @@ def test_a_cache_is_used_again_and_told(scene, tmp_path, capsys):
     assert run(scene, tmp_path / "c", "--cache", str(tmp_path / "none" / "cache.npz")) == 2
 
 
+def test_wanted_faces_alone(scene, tmp_path):
+    assert run(scene, tmp_path / "out", "--receivers", "Chão", "--receivers", "Laje") == 0
+    rows = table(tmp_path / "out" / "casa à luz_surfaces.csv")
+    assert {row["surface"] for row in rows} == {"Chão", "Laje"}
+    assert run(scene, tmp_path / "none", "--receivers", "roof") == 2
+
+
 def test_a_bad_scene_exits_with_2(scene, tmp_path, capsys):
     scene.write_text(json.dumps({"surfaces": []}), encoding="utf-8")
     assert run(scene, tmp_path / "out") == 2

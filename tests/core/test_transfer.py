@@ -209,8 +209,10 @@ def test_a_callback_that_answers_nothing_goes_on():
 
 def test_stages_are_recorded():
     stages = prepare_coarse(room()).stages
-    assert [s.name for s in stages] == ["planes", "scene check", "fracture", "visibility and form factors"]
-    assert all(s.seconds >= 0 and s.skipped == "" for s in stages)
+    ran = [s.name for s in stages if not s.skipped]
+    assert ran == ["planes", "scene check", "fracture", "visibility and form factors"]
+    assert all(s.seconds >= 0 for s in stages)
+    assert "specular chains" not in {s.name for s in stages}
     assert prepare_coarse(box(BLACK)).stages[-1].skipped
 
 
