@@ -272,23 +272,27 @@ def _set_hidden(scene: bpy.types.Scene, object_: bpy.types.Object, hidden: bool)
     return changed
 
 
+def settle_viewports(scene: bpy.types.Scene) -> None:
+    """Give the viewports their shading back where a scene has no results (any more), as after an undo."""
+    if not has_results(scene):
+        _restore_viewports(scene)
+
+
 def _viewports(scene: bpy.types.Scene):
     for window in bpy.context.window_manager.windows:
         if window.scene == scene:
             for index, area in enumerate(window.screen.areas):
                 if area.type == "VIEW_3D":
-                    yield window.screen.name, index, area
+                    yield window.screen, index, area
 
 
 def _shade_viewports(scene: bpy.types.Scene) -> None:
     """Switch the viewports to flat attribute colours of fronts, remembering how they were."""
-    remembered = scene.luzespecular.results.shadings
-    known = {(entry.name, entry.area) for entry in remembered}
     for screen, index, area in _viewports(scene):
-        shading = area.spaces.active.shading
-        if (screen, index) not in known:
+        remembered, shading = screen.luzespecular.shadings, area.spaces.active.shading
+        if index not in {entry.area for entry in remembered}:
             entry = remembered.add()
-            entry.name, entry.area = screen, index
+            entry.area = index
             entry.type, entry.light, entry.color_type = shading.type, shading.light, shading.color_type
             entry.backface_culling = shading.show_backface_culling
         shading.type, shading.light, shading.color_type = "SOLID", "FLAT", "VERTEX"
@@ -297,9 +301,10 @@ def _shade_viewports(scene: bpy.types.Scene) -> None:
 
 
 def _restore_viewports(scene: bpy.types.Scene) -> None:
-    remembered = {(entry.name, entry.area): entry for entry in scene.luzespecular.results.shadings}
+    screens = set()
     for screen, index, area in _viewports(scene):
-        entry = remembered.get((screen, index))
+        screens.add(screen)
+        entry = next((entry for entry in screen.luzespecular.shadings if entry.area == index), None)
         if entry is not None:
             shading = area.spaces.active.shading
             shading.show_backface_culling = entry.backface_culling
@@ -307,3 +312,5 @@ def _restore_viewports(scene: bpy.types.Scene) -> None:
             shading.light = entry.light
             shading.type = entry.type
         area.tag_redraw()
+    for screen in screens:
+        screen.property_unset("luzespecular")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 from bpy.app.handlers import persistent
 
-from . import following, live, session
+from . import display, following, live, session
 
 
 @persistent
@@ -31,6 +31,9 @@ def _scene_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> No
 
 @persistent
 def _stepped_back(scene: bpy.types.Scene, *_unused: object) -> None:
+    display.settle_viewports(scene)
+    if display.has_results(scene):
+        display.apply_view(scene)  # a redo brings results back, but no shading
     live.request(scene)
 
 

@@ -12,7 +12,7 @@ from .accuracy import LuzAccuracySettings
 from .kinds import BoolProperty
 from .materials import LuzMaterialSettings
 from .progress import LuzProgress
-from .results import LuzDisplaySettings, LuzResults
+from .results import LuzDisplaySettings, LuzResults, LuzScreenSettings
 from .site import LuzSiteSettings
 from .sky import LuzSkySettings
 from .surfaces import LuzMeshSettings, LuzObjectSettings
@@ -48,6 +48,7 @@ _POINTERS = (
     (bpy.types.Object, LuzObjectSettings),
     (bpy.types.Mesh, LuzMeshSettings),
     (bpy.types.Scene, LuzSceneSettings),
+    (bpy.types.Screen, LuzScreenSettings),
     (bpy.types.WindowManager, LuzProgress),
 )
 

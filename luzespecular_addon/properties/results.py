@@ -141,13 +141,19 @@ class LuzNotice(bpy.types.PropertyGroup):
 
 
 class LuzShading(bpy.types.PropertyGroup):
-    """Shading of a 3D viewport before it was switched to false colours; `name` is the screen."""
+    """Shading of a 3D viewport before it was switched to false colours."""
 
     area: IntProperty()
     type: StringProperty()
     light: StringProperty()
     color_type: StringProperty()
     backface_culling: BoolProperty()
+
+
+class LuzScreenSettings(bpy.types.PropertyGroup):
+    """What a screen's viewports looked like; with the screen, since that is what an undo leaves as it is."""
+
+    shadings: CollectionProperty(type=LuzShading)
 
 
 class LuzPin(bpy.types.PropertyGroup):
@@ -171,7 +177,6 @@ class LuzResults(bpy.types.PropertyGroup):
     rows: CollectionProperty(type=LuzSurfaceRow)
     active_row: IntProperty()
     notices: CollectionProperty(type=LuzNotice)
-    shadings: CollectionProperty(type=LuzShading)
     legend_low: FloatProperty()
     legend_high: FloatProperty()
     run: IntProperty()
@@ -187,4 +192,4 @@ class LuzResults(bpy.types.PropertyGroup):
     gamma_before: FloatProperty()
 
 
-CLASSES = (LuzDisplaySettings, LuzSurfaceRow, LuzNotice, LuzShading, LuzPin, LuzOverride, LuzResults)
+CLASSES = (LuzDisplaySettings, LuzSurfaceRow, LuzNotice, LuzShading, LuzScreenSettings, LuzPin, LuzOverride, LuzResults)

@@ -93,7 +93,7 @@ def test_switching_off_leaves_nothing_behind(bpy):
         ]
         pointers = [
             t
-            for t in ("Scene", "Object", "Mesh", "Material", "WindowManager")
+            for t in ("Scene", "Screen", "Object", "Mesh", "Material", "WindowManager")
             if hasattr(getattr(bpy.types, t), "luzespecular")
         ]
         return types, handlers, pointers
@@ -105,7 +105,7 @@ def test_switching_off_leaves_nothing_behind(bpy):
         types, handlers, pointers = ours()
         assert len(types) > 10
         assert len(handlers) >= 8
-        assert len(pointers) == 5
+        assert len(pointers) == 6
 
 
 def test_failed_registration_is_undone(bpy, addon, monkeypatch):

@@ -25,6 +25,10 @@ def steps(window):
     yield 1.0
     yield from window.open_tab()
     scene = bpy.context.scene
+    stop_clock = window.clock()
+    yield 2.0
+    stop_clock()
+    print("longest pauses at rest [s]:", [round(pause, 3) for pause in sorted(window.pauses)[-3:]], flush=True)
     with window.override():
         assert bpy.ops.luzespecular.solve("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
     stop_clock = window.clock()
@@ -83,6 +87,26 @@ def steps(window):
     assert f"{int(scene.luzespecular.site.hour):02d}:" in scene.luzespecular.results.title
     window.shot("undone")
 
+    # Undo of the run itself takes results and shading away, redo brings them back.
+    shading = lambda: window.area().spaces.active.shading.color_type  # noqa: E731
+    steps_back = 0
+    while bpy.context.scene.luzespecular.results.rows and steps_back < 6:
+        with window.override():
+            bpy.ops.ed.undo()
+        steps_back += 1
+        yield 0.5
+    assert not bpy.context.scene.luzespecular.results.rows
+    assert shading() != "VERTEX"
+    window.shot("run undone")
+    for _ in range(steps_back):
+        with window.override():
+            bpy.ops.ed.redo()
+        yield 0.5
+    scene = bpy.context.scene
+    assert scene.luzespecular.results.rows
+    assert shading() == "VERTEX"
+    yield from window.until(lambda: not bpy.app.timers.is_registered(live._tick), 30)
+
     # Saving and loading keeps settings and results.
     path = window.folder / "casa à luz.blend"
     rows = [(row.name, row.mean) for row in scene.luzespecular.results.rows]
@@ -135,10 +159,10 @@ def drag_hour(window):
     window.press("LEFTMOUSE", x, y, "PRESS")
     yield 0.1
     stop_clock = window.clock()
-    for step in range(40):
-        window.move(x + 3 * (step + 1), y)
-        yield 0.03
-    window.press("LEFTMOUSE", x + 120, y, "RELEASE")
+    for step in range(20):
+        window.move(x + step + 1, y)
+        yield 0.05
+    window.press("LEFTMOUSE", x + 20, y, "RELEASE")
     yield 0.1
     stop_clock()
     print("longest pauses while dragging [s]:", [round(p, 3) for p in sorted(window.pauses)[-3:]], flush=True)
