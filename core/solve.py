@@ -69,7 +69,13 @@ class Field:
 
 
 def solve_light(
-    transfer: Transfer, light: Daylight, *, tolerance: float, cycles: int | None, progress: Progress | None
+    transfer: Transfer,
+    light: Daylight,
+    *,
+    tolerance: float,
+    cycles: int | None,
+    quick: bool,
+    progress: Progress | None,
 ) -> Result:
     """See `Transfer.solve`."""
     _check_options(light, tolerance, cycles)
@@ -118,7 +124,10 @@ def solve_light(
         field = Field(components, np.zeros(0), np.zeros(0), [], 0, np.zeros(0), np.zeros(0), 0.0)
     else:
         with recorder.stage("interreflection", 0.1):
-            field = interreflect(transfer, components, sunlight, reflectance, emitted, tolerance, cycles, recorder)
+            bright = ([], []) if quick else bright_few(geometry, sunlight)
+            field = interreflect(
+                transfer, components, sunlight, bright, reflectance, emitted, tolerance, cycles, recorder
+            )
     recorder.report(1.0, "solved")
     return Result.of(transfer, light, sky, sunlight, field, recorder.stages)
 
@@ -152,15 +161,25 @@ def patch_properties(geometry: Geometry) -> tuple[np.ndarray, np.ndarray]:
     return reflectance, emitted
 
 
-def interreflect(transfer, components, sunlight: Sunlight, reflectance, emitted, tolerance, cycles, recorder) -> Field:
-    """Add emitted and interreflected light to the components."""
+def interreflect(
+    transfer,
+    components,
+    sunlight: Sunlight,
+    bright: tuple[list[Source], list[Source]],
+    reflectance,
+    emitted,
+    tolerance,
+    cycles,
+    recorder,
+) -> Field:
+    """Add emitted and interreflected light to the components: the bright few's by themselves, the rest by the globe."""
     geometry = transfer.geometry
-    emitters, sunny = bright_few(geometry, sunlight)
+    emitters, sunny = bright
     sun = components["sun_direct"] + components["sun_specular"]
     none, adjusted = np.zeros(len(emitted)), np.zeros(4)
     by_globe, deep_emitted, deep_reflected = none, none, none
-    if len(geometry.outlines.vertices) > EXACT_OUTLINES:
-        by_globe, emitters, sunny = emitted, [], []
+    if emitted.any() and not emitters:
+        by_globe = emitted
         components["emitted"] = transfer.on_elements(gather_patches(transfer, emitted))
     elif emitters:
         deep_emitted = emitted
@@ -222,9 +241,12 @@ def _cycles_after_first(factors, reflectance, smooth, first, cycles: int, checkp
 
 
 def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], list[Source]]:
-    """Luminous surfaces, and sun patches on diffuse surfaces, as sources."""
+    """Luminous surfaces, and sun patches on diffuse surfaces, as sources; none where there are too many outlines."""
     outlines = geometry.outlines
-    emitters, sunny = [], []
+    emitters: list[Source] = []
+    sunny: list[Source] = []
+    if len(outlines.vertices) > EXACT_OUTLINES:
+        return emitters, sunny
     for polygon, material, two_sided in zip(outlines.vertices, outlines.materials, outlines.two_sided, strict=True):
         if material.exitance > 0:
             emitters.append(Source(polygon, material.exitance))

@@ -1,7 +1,7 @@
 """Live results: with the transfer ready, another hour, date or sky is solved and shown while one drags.
 
 Requests come in faster than they can be answered: the newest counts, one at a time is solved in a thread of its own,
-and Blender's timer writes what is done. While one drags, reflections stop early and work planes are left as they are;
+and Blender's timer writes what is done. While one drags, reflections are followed roughly and work planes left alone;
 once the settings rest, all is brought to its end. Frames to be rendered are solved to the end before they are drawn.
 """
 
@@ -160,10 +160,8 @@ class Live:
     def _start(self, planned: study.Study, quick: bool) -> None:
         solved = planned
         if quick:
-            solved = replace(planned, grids=())
-            if planned.solving.get("cycles") is None:
-                tolerance = max(_QUICK_TOLERANCE, planned.solving.get("tolerance", 0.0))
-                solved = replace(solved, solving={**planned.solving, "tolerance": tolerance})
+            tolerance = max(_QUICK_TOLERANCE, planned.solving.get("tolerance", 0.0))
+            solved = replace(planned, grids=(), solving={**planned.solving, "tolerance": tolerance, "quick": True})
         self._quick = quick
         self._job = Job(solved, session.current)
         self._job.start()

@@ -271,3 +271,21 @@ def test_the_sky_column_holds_means_over_parcels(unlit):
     globe = unlit.geometry.targets.globe
     upward = globe.first_moments[: len(clear) - 1, 2]
     assert clear[:-1] @ upward == pytest.approx(10_000, rel=3e-3)
+
+
+def test_quick_is_near_and_keeps_the_lumens(transfer, unlit):
+    for some in (transfer, unlit):
+        exact, quick = some.solve(BOTH), some.solve(BOTH, quick=True)
+        for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular"):
+            np.testing.assert_array_equal(quick.components[name], exact.components[name])
+        off = quick.illuminance - exact.illuminance
+        assert np.sqrt(np.average(off**2, weights=exact.areas)) < 0.05 * np.average(
+            exact.illuminance, weights=exact.areas
+        )
+        assert abs(quick.balance.defect) < 0.02
+        assert quick.balance.entering == pytest.approx(exact.balance.entering, rel=0.02)
+
+
+def test_quick_changes_nothing_where_nothing_is_bright(unlit):
+    sky = luz.Daylight(sky=SKY)
+    np.testing.assert_array_equal(unlit.solve(sky, quick=True).illuminance, unlit.solve(sky).illuminance)
