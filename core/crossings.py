@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from .arrays import dots, pick
 from .projection import Beams, Obstacles, coverage
 from .views import Eye
 
@@ -57,20 +58,21 @@ class Candidates:
         """Find the edges that really cross the beams: by their own shape, not the circle around them."""
         reach = beams.reach.astype(np.float32)[beam]
         edge, pair = np.nonzero(np.abs(sine) < reach)
-        mine = beam[pair]
-        normal = planes[row[pair], obstacle[pair], edge]
-        across = np.einsum("mac,mc->am", beams.spans[mine], normal)
-        place = sine[edge, pair] - beams.lags[mine] * across[0]
+        mine = beam.take(pair)
+        first = (row * planes.shape[1] + obstacle) * planes.shape[2]
+        normal = planes.reshape(-1, 3).take(first.take(pair) + edge, axis=0)
+        across = np.stack([dots(side, normal) for side in beams.spans.take(mine, axis=0).swapaxes(0, 1)])
+        place = pick(sine, edge, pair) - beams.lags.take(mine) * across[0]
         np.abs(across, out=across)
         support = 0.5 * (across[0] + across[1])
         round_ = np.flatnonzero(beams.odd[mine])
         support[round_] = reach[pair[round_]]
-        beyond = (sine <= -reach).any(axis=0) | (heights[row, obstacle] == 0)
+        beyond = (sine <= -reach).any(axis=0) | (pick(heights, row, obstacle) == 0)
         outside = beyond.copy()
         outside[pair[place <= -support]] = True
         crossing = np.flatnonzero((np.abs(place) < support) & ~outside[pair])
         edges = np.bincount(pair[crossing], minlength=len(row))
-        idle = _idle(pair[crossing], edges, normal[crossing], place[crossing], reach)
+        idle = _idle(pair[crossing], edges, normal.take(crossing, axis=0), place[crossing], reach)
         edges -= np.bincount(pair[crossing[idle]], minlength=len(row))
         crossing = np.delete(crossing, idle)
         crossed = np.flatnonzero(edges)
@@ -85,8 +87,8 @@ class Candidates:
             crossed,
             edges[crossed],
             number[pair[crossing]],
-            normal[crossing],
-            across[:, crossing],
+            normal.take(crossing, axis=0),
+            across.take(crossing, axis=1),
             place[crossing],
         )
 
@@ -96,7 +98,7 @@ def _idle(pair, edges, normal, place, reach) -> np.ndarray:
     two = np.flatnonzero(edges[pair] == 2)
     two = two[np.argsort(pair[two], kind="stable")]
     a, b = two[::2], two[1::2]
-    alike = np.einsum("nc,nc->n", normal[a], normal[b])
+    alike = dots(normal.take(a, axis=0), normal.take(b, axis=0))
     apart = np.sqrt(np.maximum(1 - alike * alike, 0))
     most = (1.05 * reach[pair[a]]) ** 2
     # the other edge's distance along each within the beam: at its middle, and how much it may change to either side
@@ -126,7 +128,7 @@ class Crossed:
 
     def take(self, index) -> Crossed:
         """Some of them."""
-        return Crossed(*(getattr(self, f.name)[index] for f in fields(self)))
+        return Crossed(*(getattr(self, f.name).take(index, axis=0) for f in fields(self)))
 
     @property
     def starts(self) -> np.ndarray:
@@ -142,8 +144,8 @@ def settle_whole(
     row, beam, obstacle = candidates.row[whole], candidates.beam[whole], candidates.obstacle[whole]
     towards = eye.towards(row, beam, beams)
     distance = _distance_along(eye.heights, obstacles, row, obstacle, towards).astype(np.float32)
-    least = start[row, beam] if start.shape[1] > 1 else start[row, 0]
-    ahead = np.flatnonzero((distance > least) & (distance < nearest[row, beam]))
+    least = pick(start, row, beam) if start.shape[1] > 1 else start[row, 0]
+    ahead = np.flatnonzero((distance > least) & (distance < pick(nearest, row, beam)))
     ahead = ahead[np.argsort(-distance[ahead], kind="stable")]  # the nearest is written last
     seen[row[ahead], beam[ahead]] = obstacle[ahead]
     nearest[row[ahead], beam[ahead]] = distance[ahead]
@@ -158,27 +160,30 @@ def find_crossings(seen, candidates: Candidates, heights, beams: Beams, obstacle
     covered, moment = coverage(candidates.place.astype(float), *candidates.across.astype(float))
     # exact for one edge, and near enough where edges meet at a corner
     share, edge_sum = np.ones(len(mine)), np.zeros((len(mine), 3), np.float32)
-    lone = edges[pair] == 1
+    lone = edges.take(pair) == 1
     several = np.flatnonzero(~lone)
+    lone = np.flatnonzero(lone)
     share[pair[lone]] = covered[lone]
-    edge_sum[pair[lone]] = normal[lone]
+    edge_sum[pair[lone]] = normal.take(lone, axis=0)
     np.multiply.at(share, pair[several], covered[several])
-    np.add.at(edge_sum, pair[several], normal[several])
-    offset = np.zeros((len(mine), 3), np.float32)
-    offset[pair] = (moment / np.maximum(covered, 1e-12)).astype(np.float32)[:, None] * normal
+    np.add.at(edge_sum, pair[several], normal.take(several, axis=0))
+    last = np.zeros(len(mine), np.int64)
+    last[pair] = np.arange(len(pair))
+    offset = (moment / np.maximum(covered, 1e-12)).astype(np.float32).take(last)[:, None] * normal.take(last, axis=0)
     # what is nearer shows at the part's own centre: an edge may stand on the obstacle behind it
-    towards = beams.directions.astype(np.float32)[beam] + offset
+    towards = beams.directions.astype(np.float32).take(beam, axis=0) + offset
     distance = _distance_along(heights, obstacles, row, obstacle, towards)
-    behind = seen[row, beam]
+    behind = pick(seen, row, beam)
     known = np.flatnonzero(behind >= 0)
-    far = _distance_along(heights, obstacles, row[known], behind[known], towards[known])
+    far = _distance_along(heights, obstacles, row[known], behind[known], towards.take(known, axis=0))
     far *= np.where(edges[known] < 2, 1.0, _WELL_BEHIND)
     shows = np.ones(len(mine), bool)
     shows[known] = ~(np.isfinite(distance[known]) & (distance[known] >= far))
     keep = np.flatnonzero(shows)
-    key = (row[keep] * len(beams.directions) + beam[keep]).astype(np.int32)
-    keep = keep[np.argsort(key, kind="stable")]
     key = row[keep] * len(beams.directions) + beam[keep]
+    # with the obstacle no two are alike, so that the fast sort, which is not stable, will do
+    order = np.argsort(key * len(obstacles.outlines) + obstacle[keep])
+    keep, key = keep[order], key[order]
     group = np.cumsum(np.diff(key, prepend=key[:1]) > 0)
     return Crossed(
         row[keep],
@@ -186,10 +191,10 @@ def find_crossings(seen, candidates: Candidates, heights, beams: Beams, obstacle
         obstacle[keep],
         mine[keep],
         share[keep],
-        offset[keep],
+        offset.take(keep, axis=0),
         distance[keep],
         edges[keep],
-        edge_sum[keep],
+        edge_sum.take(keep, axis=0),
         group,
     )
 
@@ -212,7 +217,7 @@ def subtract_aligned(crossed: Crossed) -> np.ndarray:
     swap = crossed.distance[front] > crossed.distance[back]
     front, back = np.where(swap, back, front), np.where(swap, front, back)
     pair = (size == 2) & (crossed.edges[front] == 1) & (crossed.edges[back] == 1)
-    alike = np.einsum("gc,gc->g", crossed.edge_sum[front], crossed.edge_sum[back])
+    alike = dots(crossed.edge_sum.take(front, axis=0), crossed.edge_sum.take(back, axis=0))
     nested = np.flatnonzero(pair & (alike > _ALIGNED))
     a, b = front[nested], back[nested]
     covered = np.maximum(crossed.share[b] - crossed.share[a], 0.0)
@@ -227,7 +232,7 @@ def subtract_aligned(crossed: Crossed) -> np.ndarray:
 
 def _distance_along(heights, obstacles: Obstacles, row, obstacle, towards) -> np.ndarray:
     """(n,) float: distance from receivers to obstacles' planes along directions; inf where these lead away."""
-    slope = np.einsum("nc,nc->n", towards, obstacles.normals[obstacle])
+    slope = dots(towards, obstacles.normals.take(obstacle, axis=0))
     with np.errstate(divide="ignore", invalid="ignore"):
-        distance = heights[row, obstacle] / slope
+        distance = pick(heights, row, obstacle) / slope
     return np.where(distance > 0, distance, np.inf)

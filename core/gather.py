@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arrays import dots
 from .globe import Globe, Hemisphere
 from .patches import Patches
 from .planes import Planes
@@ -122,16 +123,15 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
 
 
 def _add_patches(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray, unlit: np.ndarray) -> None:
-    found = [*_whole_beams(s, targets, unlit), _parts_of_beams(s, parts, targets, unlit)]
-    row = np.concatenate([f[0] for f in found])
+    _add_whole_beams(s, targets, out, unlit)
+    row, patch, weight = _parts_of_beams(s, parts, targets, unlit)
     if len(row):
-        flat = s.rows[row] * targets.patches.count + np.concatenate([f[1] for f in found])
-        weight = np.concatenate([f[2] for f in found])
+        flat = s.rows[row] * targets.patches.count + patch
         out += np.bincount(flat, weights=weight, minlength=out.size).reshape(out.shape)
 
 
-def _whole_beams(s: Sighting, targets: Targets, unlit: np.ndarray):
-    """Rows, patches and weights of the beams that see one obstacle wholly: in float32, obstacle by obstacle."""
+def _add_whole_beams(s: Sighting, targets: Targets, out: np.ndarray, unlit: np.ndarray) -> None:
+    """Add beams that see one obstacle wholly: in float32, obstacle by obstacle."""
     grid, fronts = targets.patches, len(targets.planes.sheet_surface)
     for k, columns in s.view.columns.items():
         sheet = targets.planes.outline_sheet[s.obstacles.outlines[k]]
@@ -144,19 +144,34 @@ def _whole_beams(s: Sighting, targets: Targets, unlit: np.ndarray):
             dead = base < 0 and s.dead_share(k, back)
             if base < 0 and not dead:
                 continue
-            here = np.ix_(rows, columns) if len(rows) < len(behind) else (slice(None), columns)
-            seen = s.view.seen[here] == k
-            weights = np.broadcast_to(s.weights[here], seen.shape)
+            here = _picker(rows, len(behind), columns)  # beam after beam, as they lie in memory
+            weights = np.where(here(s.view.seen) == k, here(s.weights), 0.0)
             if dead:
-                unlit[s.rows[rows]] += dead * np.where(seen, weights, 0.0).sum(axis=1)
+                unlit[s.rows[rows]] += dead * weights.sum(axis=0)
                 continue
-            cell = _grid_cells(s, targets, sheet, back * fronts, rows, columns, s.view.nearest[here])
-            row = np.broadcast_to(rows[:, None], seen.shape)[seen]
-            yield row, grid.grid[base + cell[seen]], weights[seen]
+            cell = _grid_cells(s, targets, sheet, back * fronts, rows, columns, here(s.view.nearest))
+            shape = grid.grid_shape[sheet + back * fronts]
+            found = grid.grid[base : base + int(shape[0] * shape[1])]
+            first, count = int(found.min()), int(np.ptp(found)) + 1
+            place = (found - first).take(cell) + count * np.arange(len(rows))
+            sums = np.bincount(place.ravel(), weights=weights.ravel(), minlength=len(rows) * count)
+            out[s.rows[rows], first : first + count] += sums.reshape(-1, count)
+
+
+def _picker(rows: np.ndarray, count: int, columns: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """Picks some of ``count`` rows and some columns of a matrix; the result is transposed."""
+
+    def pick(matrix: np.ndarray) -> np.ndarray:
+        if matrix.strides[0] == 0:  # all rows are one
+            return matrix[0, columns, None]
+        found = matrix.T.take(columns, axis=0)
+        return found if len(rows) == count else found.take(rows, axis=1)
+
+    return pick
 
 
 def _grid_cells(s: Sighting, targets: Targets, sheet: int, behind: int, rows, columns, distance) -> np.ndarray:
-    """(r, k) int32: cell of the sheet's grid that each beam ends in; anything where the distance is infinite."""
+    """(k, r) int32: cell of the sheet's grid that each beam ends in; any where the distance is infinite."""
     grid, axes = targets.patches, targets.planes.sheet_axes[sheet]
     origin, scale, shape = (g[sheet + behind] for g in (grid.grid_origin, grid.grid_scale, grid.grid_shape))
     # in-plane place = axes · point + distance · (axes · direction), in cells
@@ -165,9 +180,10 @@ def _grid_cells(s: Sighting, targets: Targets, sheet: int, behind: int, rows, co
     cells = []
     with np.errstate(invalid="ignore"):
         for axis in (0, 1):
-            place = distance * along[:, axis]
-            place += start[:, axis, None]
-            np.maximum(place, 0, out=place)
+            place = distance * along[:, axis, None]
+            place += start[:, axis]
+            # whatever is not a number becomes 0 here
+            np.fmax(place, 0, out=place)
             np.minimum(place, np.float32(shape[axis] - 0.5), out=place)
             cells.append(place.astype(np.int32))
     cells[0] *= np.int32(shape[1])
@@ -179,7 +195,8 @@ def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.
     view, grid = s.view, targets.patches
     fronts = len(targets.planes.sheet_surface)
     mine = np.flatnonzero(view.part_seen >= 0)
-    row, obstacle, weight, towards = view.part_row[mine], view.part_seen[mine], parts[mine], view.part_direction[mine]
+    row, obstacle, weight = view.part_row[mine], view.part_seen[mine], parts[mine]
+    towards = view.part_direction.take(mine, axis=0)
     sheet = targets.planes.outline_sheet[s.obstacles.outlines[obstacle]]
     height = view.heights[row, obstacle]
     side = sheet + np.where(height > 0, fronts, 0)
@@ -189,18 +206,18 @@ def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.
         kinds, kind = np.unique(obstacle[dark] * 2 + (height[dark] > 0), return_inverse=True)
         dead = np.array([s.dead_share(int(k // 2), bool(k % 2)) for k in kinds])[kind.reshape(-1)]
         unlit += np.bincount(s.rows[row[dark]], weights=weight[dark] * dead, minlength=len(unlit))
-    lit = base >= 0
-    row, obstacle, weight, towards = row[lit], obstacle[lit], weight[lit], towards[lit]
+    lit = np.flatnonzero(base >= 0)
+    row, obstacle, weight, towards = row[lit], obstacle[lit], weight[lit], towards.take(lit, axis=0)
     sheet, side, base, height = sheet[lit], side[lit], base[lit], height[lit]
-    axes = targets.planes.sheet_axes[sheet]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        distance = height / np.einsum("nc,nc->n", towards, s.obstacles.normals[obstacle])
+        distance = height / dots(towards, s.obstacles.normals.take(obstacle, axis=0))
     distance = np.nan_to_num(distance, posinf=1e30, neginf=-1e30)
-    place = np.einsum("nac,nc->na", axes, s.points[row] + distance[:, None] * towards)
-    place = (place - grid.grid_origin[side]) * grid.grid_scale[side]
-    shape = grid.grid_shape[side]
-    cell = np.clip(place, 0, shape - 0.5).astype(np.int64)
-    return row, grid.grid[base + cell[:, 0] * shape[:, 1] + cell[:, 1]], weight
+    points = s.points.take(row, axis=0) + distance[:, None] * towards
+    cells = []
+    for k in (0, 1):
+        place = dots(targets.planes.sheet_axes[:, k].take(sheet, axis=0), points) - grid.grid_origin[side, k]
+        cells.append(np.clip(place * grid.grid_scale[side, k], 0, grid.grid_shape[side, k] - 0.5).astype(np.int64))
+    return row, grid.grid[base + cells[0] * grid.grid_shape[side, 1] + cells[1]], weight
 
 
 def _add_sky(s: Sighting, targets: Targets, hemisphere: Hemisphere, out: np.ndarray) -> None:

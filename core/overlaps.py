@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from . import polygons
+from .arrays import dots
 from .hemisphere import Shapes
 from .projection import Beams
 
@@ -66,7 +67,7 @@ class Cuts:
 
     def distance(self, obstacle, towards) -> np.ndarray:
         """(m,) float: how far obstacles' planes are, in lengths of ``towards``; inf where they are not ahead."""
-        return _along(self.height[obstacle], self.normal[obstacle], towards)
+        return _along(self.height[obstacle], self.normal.take(obstacle, axis=0), towards)
 
     def of(self, groups) -> tuple[Cuts, np.ndarray]:
         """The cuts of some groups, which are numbered anew, and their places among all."""
@@ -116,8 +117,8 @@ class Limits:
 
     def hold(self, group, distance, towards) -> np.ndarray:
         """(n,) bool: whether what lies this many lengths of ``towards`` away is between them."""
-        far = _along(self.far_height[group], self.far_normal[group], towards)
-        near = np.where(distance < np.inf, distance, 0.0) * np.einsum("nc,nc->n", self.near_normal[group], towards)
+        far = _along(self.far_height[group], self.far_normal.take(group, axis=0), towards)
+        near = np.where(distance < np.inf, distance, 0.0) * dots(self.near_normal.take(group, axis=0), towards)
         return (distance < far) & (near >= self.near_height[group])
 
 
@@ -181,7 +182,7 @@ def _visible(cuts: Cuts, beams: Beams, limits: Limits, shapes: Shapes):
     every = np.arange(len(cuts.beam))
     whole = region.whole(groups)
     alone = region.moments(every[:, None])
-    ahead = _towards(region.frames[cuts.beam], alone)
+    ahead = _towards(region.frames.take(cuts.beam, axis=0), alone)
     distance = cuts.distance(every, ahead)
     shows = (alone[:, 0] > _NOTHING * whole[cuts.group, 0]) & (distance < np.inf)
     shows &= limits.hold(cuts.group, distance, ahead)
@@ -221,22 +222,24 @@ class _Tally:
         beam = np.empty(groups, np.int64)
         beam[group] = self.cuts.beam
         cosines, frames = self.beams.hemisphere.cosines[self.beams.columns[beam]], self.beams.frames
-        total = np.where(self.settled, np.einsum("gc,gc->g", self.whole, cosines), 1.0)
-        share = np.einsum("nc,nc->n", self.visible, cosines[group]) / total[group]
+        total = np.where(self.settled, dots(self.whole, cosines), 1.0)
+        share = dots(self.visible, cosines.take(group, axis=0)) / total[group]
         share = np.where(self.settled[group], np.maximum(share, 0.0), 0.0)
         covered = np.bincount(group, weights=share, minlength=groups)
         left = 1.0 - covered
         left[left < _CLOSED] = 0.0
         share /= (covered + left)[group]
         hidden = np.stack([np.bincount(group, weights=v, minlength=groups) for v in self.visible.T], axis=1)
-        towards = _towards(frames[self.cuts.beam], self.visible)
-        return Shares(share, towards, left, _towards(frames[beam], self.whole - hidden), self.settled)
+        towards = _towards(frames.take(self.cuts.beam, axis=0), self.visible)
+        return Shares(share, towards, left, _towards(frames.take(beam, axis=0), self.whole - hidden), self.settled)
 
 
 def _towards(frames, moments) -> np.ndarray:
     """(m, 3) float: the middles of regions; of beams where they have no area."""
-    moments = np.where(moments[:, :1] > 1e-300, moments, [1.0, 0.0, 0.0])
-    return np.einsum("mac,ma->mc", frames, moments / moments[:, :1])
+    area = moments[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        x, y = (np.where(area > 1e-300, moments[:, k] / area, 0.0)[:, None] for k in (1, 2))
+    return frames[:, 0] + x * frames[:, 1] + y * frames[:, 2]
 
 
 class _Regions:
@@ -255,8 +258,9 @@ class _Regions:
         self.count = np.concatenate(counts)
         self.first = np.cumsum(self.count) - self.count
         self.frames = beams.frames
-        lines = np.einsum("lac,lc->la", self.frames[np.concatenate(owners)], np.concatenate(edges))
-        self.lines = np.concatenate([lines, [[1.0, 0.0, 0.0]]]).T.copy()  # the last cuts nothing
+        frames, edge = self.frames.take(np.concatenate(owners), axis=0), np.concatenate(edges)
+        lines = np.stack([dots(frames[:, k], edge) for k in range(3)])
+        self.lines = np.concatenate([lines, [[1.0], [0.0], [0.0]]], axis=1)  # the last cuts nothing
 
     def whole(self, groups: int) -> np.ndarray:
         """(g, 3) float: area and first moments of each beam, within its window."""
@@ -289,8 +293,8 @@ class _Regions:
             for end in ends:
                 if end - begin >= _BATCH or (end == len(mine) and end > begin):
                     now = mine[begin:end]
-                    bounds = self.lines[:, self._lines_of(members[now], lines[now]).T]
-                    out[now] = polygons.convex_moments(corners[:, :sides, column[now]], bounds).T
+                    bounds = self.lines.take(self._lines_of(members[now], lines[now]).T, axis=1)
+                    out[now] = polygons.convex_moments(corners[:, :sides].take(column[now], axis=2), bounds).T
                     begin = end
         return out
 
@@ -333,11 +337,12 @@ class _Regions:
         moments = self.moments(some[together])
         column = self.beams.columns[self.cuts.beam[some[other]]]
         real = moments[:, 0] > _NOTHING * self.shapes.moments[column, 0]
-        return together[real], moments[real]
+        real = np.flatnonzero(real)
+        return together.take(real, axis=0), moments.take(real, axis=0)
 
     def farthest(self, members, moments) -> np.ndarray:
         """(m,) int: of the obstacles ``(m, s)`` that have a region in common, the one seen last."""
-        towards = _towards(self.frames[self.cuts.beam[members[:, 0]]], moments)
+        towards = _towards(self.frames.take(self.cuts.beam[members[:, 0]], axis=0), moments)
         distance = np.stack([self.cuts.distance(members[:, k], towards) for k in range(members.shape[1])], axis=1)
         return members[np.arange(len(members)), np.argmax(distance, axis=1)]
 
@@ -345,7 +350,7 @@ class _Regions:
 def _along(height, normal, towards) -> np.ndarray:
     """(n,) float: distance to planes, in lengths of ``towards``; inf where they are not ahead."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        along = height / np.einsum("nc,nc->n", normal, towards)
+        along = height / dots(normal, towards)
     return np.where(along > 0, along, np.inf)
 
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from . import lattice, overlaps
+from .arrays import dots, pick
 from .crossings import Candidates, Crossed, find_crossings, subtract_aligned
 from .projection import Beams, Obstacles
 from .views import OPEN, SHARED, Eye, View
@@ -47,7 +48,7 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
     starts, group = crossed.starts, crossed.group
     aligned = subtract_aligned(crossed)
     head = crossed.row[starts], crossed.beam[starts]
-    background = seen[head]
+    background = pick(seen, *head)
     total = np.add.reduceat(crossed.share, starts)
     size = np.diff(np.append(starts, len(group)))
     most_edges = np.maximum.reduceat(crossed.edges, starts)
@@ -71,14 +72,15 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
     # several edges, but no opening: shares by each edge alone, brought to a sum of 1
     filled = ~simple & (total > 1e-9) & closed & (background == OPEN) & ~partial
     # the part's share of the cosine-weighted beam, to first order
-    share = crossed.share * np.clip(1 + np.einsum("nc,nc->n", crossed.offset, beams.slopes[crossed.beam]), 0.0, 2.0)
+    change = dots(crossed.offset, beams.slopes.take(crossed.beam, axis=0))
+    share = crossed.share * np.clip(1 + change, 0.0, 2.0)
     weighted = np.add.reduceat(share, starts)
     # two obstacles share the edge: nothing is left between them, to the last bit
     whole = joined | filled
-    share /= np.where(whole, weighted, 1.0)[group]
+    share = share / np.where(whole, weighted, 1.0)[group]
     left = np.where(whole, 0.0, np.clip(1.0 - weighted, 0.0, 1.0))
-    towards = beams.directions[crossed.beam] + crossed.offset
-    left_towards = beams.directions[head[1]]
+    towards = beams.directions.take(crossed.beam, axis=0) + crossed.offset
+    left_towards = beams.directions.take(head[1], axis=0)
     rest = simple & (left > 0)
     moment = _group_sums(crossed.share[:, None] * crossed.offset, starts, rest)
     left_towards[rest] -= moment / np.maximum(1.0 - total[rest], 1e-3)[:, None]
@@ -104,14 +106,14 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
                 crossed.take(mine), candidates, background[groups], order, eye, beams, obstacles
             )
     seen[head] = SHARED
-    remains, lit = left > 1e-9, share > 1e-9
+    remains, lit = np.flatnonzero(left > 1e-9), np.flatnonzero(share > 1e-9)
     return View(
         seen,
         np.concatenate([crossed.row[lit], head[0][remains], candidates.row[more[0]]]),
         np.concatenate([crossed.beam[lit], head[1][remains], candidates.beam[more[0]]]),
         np.concatenate([crossed.obstacle[lit], background[remains], candidates.obstacle[more[0]]]),
         np.concatenate([share[lit], left[remains], more[1]]),
-        np.concatenate([towards[lit], left_towards[remains], more[2]]),
+        np.concatenate([towards.take(lit, axis=0), left_towards.take(remains, axis=0), more[2]]),
         nearest,
         possible,
         heights,
@@ -124,7 +126,7 @@ def _group_sums(values: np.ndarray, starts: np.ndarray, which: np.ndarray) -> np
     if not len(rows):
         return np.zeros((0, values.shape[1]))
     sizes = np.diff(np.append(starts, len(values)))[which]
-    return np.add.reduceat(values[rows], np.cumsum(sizes) - sizes, axis=0)
+    return np.add.reduceat(values.take(rows, axis=0), np.cumsum(sizes) - sizes, axis=0)
 
 
 def _cuts(crossed: Crossed, candidates: Candidates, eye: Eye, beams: Beams, obstacles: Obstacles):
@@ -139,14 +141,15 @@ def _cuts(crossed: Crossed, candidates: Candidates, eye: Eye, beams: Beams, obst
     sizes = np.diff(np.append(starts, len(crossed.row)))
     number = np.concatenate([crossed.number, grazing])
     row, beam, obstacle = candidates.row[number], candidates.beam[number], candidates.obstacle[number]
-    pair, edge = np.nonzero((np.abs(candidates.sine[:, number]) < beams.reach[beam]).T)
+    reach = beams.reach.astype(np.float32).take(beam)
+    pair, edge = np.nonzero((np.abs(candidates.sine.take(number, axis=1)) < reach).T)
     return grazing, overlaps.Cuts(
         beam=beam,
         group=np.concatenate([np.repeat(np.arange(len(starts)), sizes), place]),
         count=np.bincount(pair, minlength=len(row)),
         edge=eye.planes[row[pair], obstacle[pair], edge],
-        height=eye.heights[row, obstacle],
-        normal=obstacles.normals[obstacle],
+        height=pick(eye.heights, row, obstacle),
+        normal=obstacles.normals.take(obstacle, axis=0),
     )
 
 

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .arrays import pick
 from .globe import Hemisphere
 from .materials import Material
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
@@ -134,7 +135,7 @@ class Sighting:
         v = self.view
         if self.rays:
             return self.weights[:, 0]
-        return self.weights[v.part_row, v.part_beam] * v.part_share
+        return pick(self.weights, v.part_row, v.part_beam) * v.part_share
 
 
 @dataclass

@@ -59,8 +59,9 @@ def look(
     """
     points = np.asarray(points, float)
     rows, count = len(points), len(beams.directions)
-    seen = np.full((rows, count), OPEN, np.int32)
-    nearest = np.full((rows, count), np.inf, np.float32)
+    # beam after beam in memory: beams are what is picked from, and rows of receivers are copied as a whole
+    seen = np.full((count, rows), OPEN, np.int32).T
+    nearest = np.full((count, rows), np.inf, np.float32).T
     planes, heights = edge_planes(points, obstacles, tolerance)
     heights[heights > 0] *= 1 + _BACKS_LAST
     reach = beams.reach * 1.01 + 1e-6
@@ -81,19 +82,19 @@ def look(
         edges = planes[:, o, bounded].astype(np.float32)
         with np.errstate(divide="ignore", over="ignore"):
             slope = (1.0 / slopes[columns, o]).astype(np.float32)
-        distance = heights[:, o].astype(np.float32)[:, None] * slope
+        distance = np.multiply.outer(slope, heights[:, o].astype(np.float32)).T
         if partial is not None:
             _set_partial(distance, partial, columns, heights[:, o], obstacles.normals[o])
         if not certain.all():
             sines = _edge_sines(edges, beams.directions[columns].astype(np.float32))
-            inside = sines[0].copy() if len(sines) else np.full(distance.shape, np.inf, np.float32)
+            inside = sines[0].copy(order="K") if len(sines) else np.full_like(distance, np.inf)
             for other in sines[1:]:
                 np.minimum(inside, other, out=inside)
             limit = reach[columns].astype(np.float32)
             whole = inside > limit
-            near = np.flatnonzero(np.abs(inside, out=inside) <= limit)
+            near = np.flatnonzero((np.abs(inside, out=inside) <= limit).T)
             if len(near):
-                row, column = np.divmod(near, len(columns))
+                column, row = np.divmod(near, rows)
                 if wanted is not None:
                     there = wanted[row, columns[column]]
                     near, row, column = near[there], row[there], column[there]
@@ -102,11 +103,11 @@ def look(
                     near, row, column = near[ahead], row[ahead], column[ahead]
                 sine = np.full((width, len(near)), np.inf, np.float32)
                 for edge, values in zip(np.flatnonzero(bounded), sines, strict=True):
-                    sine[edge] = values.ravel()[near]
+                    sine[edge] = values.T.ravel()[near]
                 found.append((row, columns[column], np.full(len(row), o), sine))
                 within[o] = columns
         else:
-            whole = np.ones(distance.shape, bool)
+            whole = np.ones_like(distance, bool)
         before = nearest[:, columns]
         whole &= distance < before
         whole &= distance > (start if past is None else start[:, columns])
@@ -114,7 +115,7 @@ def look(
             np.copyto(before, distance, where=whole)
             nearest[:, columns] = before
             now = seen[:, columns]
-            now[whole] = o
+            np.copyto(now, o, where=whole)
             seen[:, columns] = now
             possible[o] = columns
     if found:
@@ -146,7 +147,7 @@ def _distance_to(plane: HalfSpace, points: np.ndarray, directions: np.ndarray) -
     """(r, k) float32: distance along each beam to a plane, a little less so that what stands on the plane counts."""
     with np.errstate(divide="ignore", over="ignore"):
         slope = (1.0 / (directions @ plane.normal)).astype(np.float32)
-    return (plane.offset - points @ plane.normal).astype(np.float32)[:, None] * slope * np.float32(1 - 1e-5)
+    return np.multiply.outer(slope * np.float32(1 - 1e-5), (plane.offset - points @ plane.normal).astype(np.float32)).T
 
 
 def _bounding_corners(points: np.ndarray) -> np.ndarray:
@@ -188,14 +189,13 @@ def _columns_within(hull, outline, bounded, heights, directions, reach):
 
 def _edge_sines(edges: np.ndarray, directions: np.ndarray) -> list[np.ndarray]:
     """For each edge (r, k) float32: sine of the angle from each beam's centre to its plane, positive inside."""
-    across = np.ascontiguousarray(directions.T)
     # products this small are not split over threads by BLAS, which would wait for each other here
     step = max(1, _LONE_PRODUCT // max(1, len(edges)))
     sines = []
     for e in range(edges.shape[1]):
-        edge = np.ascontiguousarray(edges[:, e])
-        sine = np.empty((len(edges), across.shape[1]), np.float32)
-        for first in range(0, across.shape[1], step):
-            np.matmul(edge, np.ascontiguousarray(across[:, first : first + step]), out=sine[:, first : first + step])
-        sines.append(sine)
+        edge = np.ascontiguousarray(edges[:, e].T)
+        sine = np.empty((len(directions), len(edges)), np.float32)
+        for first in range(0, len(directions), step):
+            np.matmul(directions[first : first + step], edge, out=sine[first : first + step])
+        sines.append(sine.T)
     return sines
