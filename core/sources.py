@@ -18,7 +18,7 @@ from .materials import Material
 from .projection import HalfSpace, reflect, reflect_points
 from .specular import ChainLimits, Outlines
 
-_FAINT = 3e-4
+_FAINT = 1e-4
 """Of the illuminance that the sources' flux would be, spread over all surfaces: what gives less is not looked for."""
 
 _TOGETHER = 16
