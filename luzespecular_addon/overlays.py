@@ -14,6 +14,8 @@ _HALO, _CORE = (0.0, 0.0, 0.0, 0.55), (1.0, 1.0, 1.0, 0.95)
 _HALO_WIDTH, _CORE_WIDTH = 3.0, 1.3
 _MARK = 4
 _DEPTH_TOLERANCE = 1e-6
+_LABEL_ROOM = np.array([56.0, 20.0])
+"""Width and height that a label needs [pixels at a resolution scale of 1]."""
 
 _handles: list[object] = []
 
@@ -51,9 +53,19 @@ def _draw_lines() -> None:
     drawing.lines(ends, _CORE_WIDTH, _CORE)
     gpu.state.depth_test_set("NONE")
     with drawing.in_pixels():
-        for value, (x, y) in zip(values[chosen][seen], _pixels(places[seen]), strict=True):
-            drawing.tag(label(float(value)), float(x), float(y))
+        shown = _pixels(places[seen])
+        for row in _apart(shown, _LABEL_ROOM * drawing.size()):
+            drawing.tag(label(float(values[chosen][seen][row])), *map(float, shown[row]))
     gpu.state.blend_set("NONE")
+
+
+def _apart(places: np.ndarray, room: np.ndarray) -> list[int]:
+    """Return which of the labels at places, (m, 2) pixels, can be written without one covering another."""
+    kept: list[int] = []
+    for row, place in enumerate(places):
+        if not (np.abs(places[kept] - place) < room).all(axis=1).any():
+            kept.append(row)
+    return kept
 
 
 def _seen(places: np.ndarray) -> np.ndarray:
