@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .block import Block
+from .block import Block, checked_lights
+from .daylight import Daylight
 from .errors import SceneError
 from .stages import Stage
 
@@ -173,7 +174,18 @@ def count_hours(transfer: Transfer, block: Block, hours: np.ndarray, limits: Ite
     return Annual(transfer, float(hours.sum()), lux_hours, levels, reached, sunny, of_faces, block.stages)
 
 
-def checked_hours(hours, count: int) -> np.ndarray:
+def without_dark(lights: Iterable[Daylight | None], hours) -> tuple[list[Daylight | None], np.ndarray]:
+    """Lights that count, all dark ones as one, and the hours that each stands for (see `Transfer.annual`)."""
+    given = checked_lights(lights)
+    counted = _checked_hours(hours, len(given))
+    dark = np.array([light is None or light.horizontal_illuminance == 0 for light in given], bool)
+    lit = np.flatnonzero(~dark & (counted > 0))
+    night = float(counted[dark].sum())
+    many = [given[k] for k in lit]
+    return (many, counted[lit]) if night == 0 else ([*many, None], np.append(counted[lit], night))
+
+
+def _checked_hours(hours, count: int) -> np.ndarray:
     """(n,) float: hours that each light stands for; a mask counts as hours of 1; None = 1 each."""
     if hours is None:
         return np.ones(count)

@@ -24,6 +24,17 @@ _SKY_STEP = 1.5
 """Degrees between the places that tell a parcel's mean luminance: lux within 2e-5 mostly, and 2e-4 everywhere."""
 
 
+def checked_lights(lights: Iterable[Daylight | None]) -> list[Daylight | None]:
+    """Lights as a list; SceneError where one is no light."""
+    many = list(lights)
+    for number, light in enumerate(many):
+        if light is not None and not isinstance(light, Daylight):
+            raise SceneError(
+                f"Light {number} must be a luzespecular.Daylight, or None for the dark, not {type(light).__name__}"
+            )
+    return many
+
+
 @dataclass(frozen=True, eq=False)
 class Lights:
     """Lights as columns, to multiply coefficients with.
@@ -45,12 +56,7 @@ class Lights:
     @classmethod
     def of(cls, lights: Iterable[Daylight | None], spacing: float) -> Lights:
         """Lights with their Suns at positions that are ``spacing`` [degrees] apart; 0 = each at its own."""
-        daylights = list(lights)
-        for number, light in enumerate(daylights):
-            if light is not None and not isinstance(light, Daylight):
-                raise SceneError(
-                    f"Light {number} must be a luzespecular.Daylight, or None for the dark, not {type(light).__name__}"
-                )
+        daylights = checked_lights(lights)
         strength, direction = np.zeros(len(daylights)), np.tile([0.0, 0.0, 1.0], (len(daylights), 1))
         for number, light in enumerate(daylights):
             if light is not None and light.sun is not None and light.sun.direction[2] > 0:

@@ -82,7 +82,12 @@ class Rows:
 
 
 def gather_nodes(
-    geometry: Geometry, limits: ChainLimits, times: float, threads: int, report: Callable[[float], None]
+    geometry: Geometry,
+    limits: ChainLimits,
+    times: float,
+    threads: int,
+    report: Callable[[float], None],
+    allow: Callable[[int], None] = lambda rows: None,
 ) -> tuple[Nodes, Nodes, Rows, np.ndarray]:
     """Form factors of all nodes.
 
@@ -94,6 +99,8 @@ def gather_nodes(
         How many times finer than usual.
     threads : int
     report : callable(fraction)
+    allow : callable(rows)
+        Called before room is taken for so many nodes; may raise where that is too much.
 
     Returns
     -------
@@ -104,6 +111,7 @@ def gather_nodes(
         See `Nodes.unsure`.
     """
     lattice = Nodes.of(geometry.fracture, geometry.lattices)
+    allow(int(_ROOM * len(lattice.points)))
     room = Rows.empty(int(_ROOM * len(lattice.points)), geometry)
     sights: dict[int, GroupSight] = {}
     light = Light.none()
@@ -113,6 +121,7 @@ def gather_nodes(
         nonlocal room, light, done
         count = len(nodes.points)
         if count > len(room.unlit):
+            allow(int(_ROOM * count))
             room = room.kept(first, int(_ROOM * count), geometry)
         members = np.arange(first, count)
         begun, share = done, (1.0 - done) * (0.6 if first == 0 else 0.7)

@@ -57,7 +57,8 @@ def prepare(
     threads : int, optional
         Default: as many as the machine has cores.
     memory : float, optional
-        Most bytes that the transfer may hold.
+        Most bytes that the transfer may hold: a scene that needs more is refused before work, or where receivers are
+        added once it turns out that light is uneven. Work itself takes some 100 MB for each thread besides.
     accuracy : float, optional
         Relative error that about 95 of 100 faces shall keep below, 0.001 to 0.2 (see `Result.error`). Bands, receivers,
         patches and, where ``max_area`` is not given, faces are then chosen for it from a trial solution; ``bands`` has
@@ -207,10 +208,14 @@ def _prepared(
     with recorder.stage("fracture", 0.01):
         geometry = make_geometry(scene, planes, globe, options.max_area, times, options.receivers)
     limits = ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines))
-    _check_memory(geometry, memory)
     with recorder.stage(LOOKING, 0.02):
         lattice, nodes, gathered, unsure = gather_nodes(
-            geometry, limits, times, threads, lambda done: recorder.report(0.02 + 0.97 * done, LOOKING)
+            geometry,
+            limits,
+            times,
+            threads,
+            lambda done: recorder.report(0.02 + 0.97 * done, LOOKING),
+            lambda nodes: _check_memory(geometry, nodes, memory),
         )
         conservation = Conservation.of(geometry, nodes, gathered)
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
@@ -255,13 +260,17 @@ def _nothing(matrix: np.ndarray) -> np.ndarray:
     return np.broadcast_to(matrix.dtype.type(0), matrix.shape)
 
 
-def _check_memory(geometry: Geometry, memory: float | None) -> None:
-    elements, columns = len(geometry.element_points), geometry.targets.columns
-    patches = geometry.targets.patches.count
+def bytes_held(geometry: Geometry, nodes: int) -> float:
+    """What a transfer with so many nodes holds, about."""
+    columns, patches = geometry.targets.columns, geometry.targets.patches.count
     specular = 2 if geometry.outlines.any_specular else 1
-    needed = 4.0 * elements * (patches + specular * columns) + 8.0 * patches**2
+    return 4.0 * nodes * (patches + specular * columns) + 8.0 * patches**2
+
+
+def _check_memory(geometry: Geometry, nodes: int, memory: float | None) -> None:
+    needed = bytes_held(geometry, nodes)
     if memory is not None and needed > memory:
         raise SceneError(
-            f"The scene needs {needed / 1e9:.2f} GB for {elements} receivers, more than the {memory / 1e9:.2f} GB "
-            "of 'memory'; raise max_area, lower bands, or allow more memory"
+            f"The scene needs {needed / 1e9:.2f} GB for {nodes} receivers, more than the {memory / 1e9:.2f} GB of "
+            "'memory'; raise max_area, lower bands, or allow more memory"
         )

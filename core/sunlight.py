@@ -185,6 +185,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
         vertices = polygons.clip(vertices[present], beam.ahead, start)
     cosine = outlines.normals[present] @ beam.travel
     walls, wall_offsets = prism(vertices, beam.travel, cosine)
+    foremost = np.argsort(-np.abs(cosine) * polygons.areas(vertices), kind="stable")  # wide shadows leave least to cut
     found = []
     for k in np.flatnonzero(np.abs(cosine) > 1e-12):
         if cosine[k] > 0 and not outlines.back_counts[present[k]]:
@@ -206,7 +207,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
             (height > tolerance).any(axis=1) & (np.abs(cosine) > 1e-12) & (spread.max(axis=2) > tolerance).all(axis=1)
         )
         meets[k] = False
-        for b in np.flatnonzero(meets):
+        for b in foremost[meets[foremost]]:
             pieces = _shadow(
                 outlines, pieces, vertices[b], int(present[b]), upstream, -plane * np.sign(cosine[k]), beam, cosine[b]
             )

@@ -249,14 +249,13 @@ class Transfer:
         SceneError, Cancelled
             As `solve_many`.
         """
-        from .annual import LIMITS, checked_hours, count_hours
+        from .annual import LIMITS, count_hours, without_dark
         from .block import make_block
 
-        many = list(lights)
-        counted = checked_hours(hours, len(many))
+        many, counted = without_dark(lights, hours)
         block = make_block(
             self,
-            [light for light, share in zip(many, counted, strict=True) if share > 0],
+            many,
             points=points,
             normals=normals,
             sun_spacing=sun_spacing,
@@ -264,7 +263,7 @@ class Transfer:
             whole=False,
             progress=progress,
         )
-        return count_hours(self, block, counted[counted > 0], LIMITS if limits is None else limits, points is None)
+        return count_hours(self, block, counted, LIMITS if limits is None else limits, points is None)
 
     def with_materials(self, scene: Scene) -> Transfer:
         """The same form factors with other diffuse reflectances and exitances: nothing is looked at again.

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import luzespecular as luz
-from luzespecular.annual import LIMITS, Annual
+from luzespecular.annual import LIMITS, Annual, without_dark
 
 WHITE = luz.Material(diffuse_reflectance=0.5)
 
@@ -40,6 +40,15 @@ def test_hours_are_counted_as_one_would(transfer, day, hours):
         if limit > 100:
             useful = year.daylight_autonomy(100) - year.daylight_autonomy(limit)
             np.testing.assert_allclose(year.useful_daylight(100, limit), useful, atol=1e-12)
+
+
+def test_dark_hours_are_one(transfer, day):
+    """However many there are: what is computed does not grow with the nights."""
+    many, counted = without_dark([*day, *[None] * 100], None)
+    assert len(many) == 1 + sum(light is not None for light in day) < 24
+    assert (counted.sum(), counted[-1]) == (124, 124 - len(many) + 1)
+    with pytest.raises(luz.SceneError, match="Light 2 must be"):
+        transfer.annual([None, None, "noon"])
 
 
 def test_occupied_hours_may_be_true_or_false(transfer, day):

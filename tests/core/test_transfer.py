@@ -10,6 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import luzespecular as luz
+from luzespecular import form_factors
+from luzespecular.preparation import bytes_held
 
 WHITE = luz.Material(diffuse_reflectance=0.5)
 MIRROR = luz.Material(specular_reflectance=0.8)
@@ -214,6 +216,26 @@ def test_stages_are_recorded():
     assert all(s.seconds >= 0 for s in stages)
     assert "specular chains" not in {s.name for s in stages}
     assert prepare_coarse(box(BLACK)).stages[-1].skipped
+
+
+@pytest.mark.parametrize("options", [{"max_area": 0.05}, {"max_area": 0.05, "bands": 60}, {"receivers": ["floor"]}])
+def test_what_is_held_keeps_within_what_is_said(options):
+    transfer = prepare_coarse(room(), **options)
+    parts = (transfer, transfer.exchange, transfer.conservation)
+    held = sum(value.nbytes for part in parts for value in vars(part).values() if isinstance(value, np.ndarray))
+    assert held <= 1.05 * bytes_held(transfer.geometry, len(transfer.nodes.points)) <= 2.5 * held
+
+
+def test_receivers_that_are_added_keep_within_the_memory_too(monkeypatch):
+    transfer = prepare_coarse(room())
+    lattice, nodes = (len(n.points) for n in (transfer.lattice, transfer.nodes))
+    monkeypatch.setattr(form_factors, "_ROOM", 1.0)
+    assert nodes > lattice
+    enough = bytes_held(transfer.geometry, nodes)
+    prepare_coarse(room(), memory=enough)
+    for short in (0.999 * enough, 0.999 * bytes_held(transfer.geometry, lattice)):
+        with pytest.raises(luz.SceneError, match="receivers, more than"):
+            prepare_coarse(room(), memory=short)
 
 
 def test_memory_is_kept_to():
