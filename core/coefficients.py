@@ -138,7 +138,7 @@ def find_coefficients(
     parcels = np.flatnonzero(seen if looked is None else seen | _seen(looked[0]))
     receivers = len(geometry.reported) if places is None else len(places.points)
     by_sun = np.zeros((2, len(suns), receivers), np.float32)
-    on_patches = np.zeros((geometry.targets.patches.count, len(suns)), np.float32)
+    on_patches = np.zeros((len(suns), geometry.targets.patches.count), np.float32)
     stays = _Stays(transfer)
     lumens = np.zeros(len(suns))
 
@@ -147,7 +147,7 @@ def find_coefficients(
         direct, by_mirrors = sunlight.on_elements(
             geometry.fracture.elements, geometry.fracture.element_sheet, geometry.planes.outline_sheet
         )
-        on_patches[:, one] = means_over_patches(geometry, direct + by_mirrors)
+        on_patches[one] = means_over_patches(geometry, direct + by_mirrors)
         lumens[one] = stays.elements @ (direct + by_mirrors)
         if places is None:
             by_sun[:, one] = [
@@ -172,7 +172,7 @@ def find_coefficients(
             out[:, : len(sky)] += np.float32(np.pi) * looked[0][:, parcels[sky]]
         if reflects:
             initial = np.concatenate(
-                [patch_means(geometry, transfer.nodes, direct).astype(np.float32), on_patches[:, sun]], axis=1
+                [patch_means(geometry, transfer.nodes, direct).astype(np.float32), on_patches[sun].T], axis=1
             )
             exitance = reflectance[:, None].astype(np.float32) * all_settled(transfer.exchange, reflectance, initial)
             if looked is not None:

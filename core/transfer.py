@@ -165,7 +165,7 @@ class Transfer:
         *,
         points=None,
         normals=None,
-        sun_spacing: float = 4.0,
+        sun_spacing: float = 5.0,
         memory: float | None = None,
         progress: Progress | None = None,
     ) -> np.ndarray:
@@ -223,7 +223,7 @@ class Transfer:
         limits: Iterable[float] | None = None,
         points=None,
         normals=None,
-        sun_spacing: float = 4.0,
+        sun_spacing: float = 5.0,
         memory: float | None = None,
         progress: Progress | None = None,
     ) -> Annual:
