@@ -14,6 +14,10 @@ from .planes import Planes
 from .specular import GroupSight, Sighting
 from .visibility import OPEN
 
+_BESIDE_BORDERS = 2e-4
+"""Shift of where beams end, in cells: in rooms of even measures many end exactly on borders between patches, and
+rounding shall not decide to which side."""
+
 
 @dataclass(frozen=True, eq=False)
 class Targets:
@@ -175,7 +179,7 @@ def _grid_cells(s: Sighting, targets: Targets, sheet: int, behind: int, rows, co
     grid, axes = targets.patches, targets.planes.sheet_axes[sheet]
     origin, scale, shape = (g[sheet + behind] for g in (grid.grid_origin, grid.grid_scale, grid.grid_shape))
     # in-plane place = axes · point + distance · (axes · direction), in cells
-    start = ((s.points[rows] @ axes.T - origin) * scale).astype(np.float32)
+    start = ((s.points[rows] @ axes.T - origin) * scale + _BESIDE_BORDERS).astype(np.float32)
     along = ((s.beams.directions[columns] @ axes.T) * scale).astype(np.float32)
     cells = []
     with np.errstate(invalid="ignore"):
@@ -216,7 +220,8 @@ def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.
     cells = []
     for k in (0, 1):
         place = dots(targets.planes.sheet_axes[:, k].take(sheet, axis=0), points) - grid.grid_origin[side, k]
-        cells.append(np.clip(place * grid.grid_scale[side, k], 0, grid.grid_shape[side, k] - 0.5).astype(np.int64))
+        place = place * grid.grid_scale[side, k] + _BESIDE_BORDERS
+        cells.append(np.clip(place, 0, grid.grid_shape[side, k] - 0.5).astype(np.int64))
     return row, grid.grid[base + cells[0] * grid.grid_shape[side, 1] + cells[1]], weight
 
 

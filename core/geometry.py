@@ -146,7 +146,7 @@ def make_geometry(
         offsets=np.einsum("oc,oc->o", outline_normals, planes.outlines[:, 0]),
         materials=[surfaces[k].material for k in outline_surface],
         two_sided=two_sided[outline_surface],
-        tolerance=max(1e-9 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
+        tolerance=max(1e-10 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
     )
     return Geometry(
         planes,
