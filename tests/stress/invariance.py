@@ -1,6 +1,6 @@
 """The light-shelf room scaled, moved, turned, mirrored, renamed, in another order, split otherwise: the same lux.
 
-Tolerances: coordinates are rounded to eps · |shift| where a scene is moved, over the smallest feature, the shelf's 5 cm;
+Tolerances: coordinates are rounded to eps · |shift| where a scene is moved, over the smallest feature (5 cm of shelf);
 the bulk is float32. Parcels stand otherwise to a room that is turned, so turns differ by the globe's error.
 """
 
