@@ -53,10 +53,11 @@ def update(scene: bpy.types.Scene, shown: Iterable[Shown], scale: colours.Colour
     parts.append((np.zeros((0, 3, 3)), np.zeros((0, 3))))
     points, values = (np.concatenate(part) for part in zip(*parts, strict=True))
     lines = isolines.trace(points, values, levels(scene, scale))
-    normals = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    crossed = points[lines.triangles]
+    normals = np.cross(crossed[:, 1] - crossed[:, 0], crossed[:, 2] - crossed[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     extent = float(np.ptp(points.reshape(-1, 3), axis=0).max()) if len(points) else 0.0
-    ends = lines.ends + _LIFT * extent * normals[lines.triangles][:, None]
+    ends = lines.ends + _LIFT * extent * normals[:, None]
     labels = isolines.label_edges(lines, _LABELS_APART * extent)
     object_ = find(scene) or _new(scene)
     mesh = object_.data

@@ -41,25 +41,31 @@ def trace(points: ArrayLike, values: ArrayLike, levels: Iterable[float]) -> IsoL
         Values to follow.
     """
     points, values = np.asarray(points, float), np.asarray(values, float)
-    found = [_one_level(points, values, float(level)) for level in levels]
+    # Column by column: many times as fast as along the short axis. NaN goes through, and is no level's neighbour.
+    lowest = np.minimum(np.minimum(values[:, 0], values[:, 1]), values[:, 2])
+    highest = np.maximum(np.maximum(values[:, 0], values[:, 1]), values[:, 2])
+    found = []
+    for level in map(float, levels):
+        rows = np.flatnonzero((lowest < level) & (highest >= level))
+        found.append((_crossings(points[rows], values[rows], level), np.full(len(rows), level), rows))
     if not found:
         return IsoLines(np.zeros((0, 2, 3)), np.zeros(0), np.zeros(0, np.intp))
     return IsoLines(*(np.concatenate(part) for part in zip(*found, strict=True)))
 
 
-def _one_level(points: NDArray, values: NDArray, level: float) -> tuple[NDArray, NDArray, NDArray]:
+def _crossings(points: NDArray, values: NDArray, level: float) -> NDArray[np.float64]:
+    """Return where a level enters and leaves triangles that it crosses, (k, 2, 3)."""
     above = values >= level
-    count = above.sum(axis=1)
-    rows = np.flatnonzero(((count == 1) | (count == 2)) & ~np.isnan(values).any(axis=1))
+    every = np.arange(len(points))
     # The corner that stands alone on its side of the level: the line crosses the two edges that leave it.
-    lone = np.argmax(np.where((count[rows] == 1)[:, None], above[rows], ~above[rows]), axis=1)
-    ends = np.empty((len(rows), 2, 3))
+    lone = np.argmax(np.where((above.sum(axis=1) == 1)[:, None], above, ~above), axis=1)
+    ends = np.empty((len(points), 2, 3))
     for end, step in enumerate((1, 2)):
         other = (lone + step) % 3
-        here, there = values[rows, lone], values[rows, other]
+        here, there = values[every, lone], values[every, other]
         share = (level - here) / (there - here)
-        ends[:, end] = points[rows, lone] + share[:, None] * (points[rows, other] - points[rows, lone])
-    return ends, np.full(len(rows), level), rows
+        ends[:, end] = points[every, lone] + share[:, None] * (points[every, other] - points[every, lone])
+    return ends
 
 
 def parse_levels(text: str) -> list[float]:

@@ -110,6 +110,8 @@ def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
 
 def triangle_corners(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Return the corners of the triangles that a mesh is cut into, (t, 3) int32."""
+    if len(mesh.loops) == 3 * len(mesh.polygons):  # nothing to cut
+        return np.arange(len(mesh.loops), dtype=np.int32).reshape(-1, 3)
     mesh.calc_loop_triangles()
     corners = np.empty((len(mesh.loop_triangles), 3), np.int32)
     if len(corners):

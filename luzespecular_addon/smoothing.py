@@ -73,10 +73,10 @@ def weld(points: ArrayLike, groups: ArrayLike, tolerance: float) -> NDArray[np.i
     (c,) int64
         0 … number of distinct points - 1.
     """
-    cells = np.rint(np.asarray(points, float) / tolerance).astype(np.int64)
-    cells -= cells.min(axis=0, initial=0)
     key, room = np.asarray(groups, np.int64), 1.0 + float(np.max(groups, initial=0))
-    for column in cells.T:
+    for place in np.asarray(points, float).T:
+        column = np.rint(place / tolerance).astype(np.int64)
+        column -= column.min(initial=0)
         size = int(column.max(initial=0)) + 1
         if room * size > _LARGEST_KEY:  # numbered anew, without gaps
             key = np.unique(key, return_inverse=True)[1].reshape(-1)
@@ -96,8 +96,9 @@ def _flat_means(values: NDArray, areas: NDArray, face: NDArray, vertex: NDArray)
 def _rough(normals: NDArray, areas: NDArray, face: NDArray, vertex: NDArray) -> NDArray[np.bool_]:
     """Whether any face at a corner's vertex leans by more than half the smooth angle from the mean of them."""
     count = int(vertex.max()) + 1
-    mean = np.column_stack([np.bincount(vertex, areas[face] * normals[face, axis], count) for axis in range(3)])
-    mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-300)
+    weighted = areas[:, None] * normals
+    mean = np.column_stack([np.bincount(vertex, weighted[face, axis], count) for axis in range(3)])
+    mean /= np.maximum(np.sqrt(np.einsum("vx,vx->v", mean, mean)), 1e-300)[:, None]
     leans = np.einsum("cx,cx->c", normals[face], mean[vertex]) < np.cos(np.radians(SMOOTH_ANGLE / 2.0))
     return np.bincount(vertex, leans, count)[vertex] > 0
 

@@ -26,7 +26,7 @@ class LUZESPECULAR_PT_work_planes(Sidebar, bpy.types.Panel):
         layout = self.layout
         planes = work_planes.all_of(context.scene)
         for plane in planes:
-            _draw_plane(layout.box(), plane, placements.unit_scale(context.scene), context.region.width)
+            _draw_plane(layout.box(), plane, context.scene, context.region.width)
         layout.operator("luzespecular.add_work_plane", icon="MESH_GRID")
         object_ = context.object
         if object_ is not None and object_.type == "MESH" and not object_.luzespecular.is_results:
@@ -36,25 +36,28 @@ class LUZESPECULAR_PT_work_planes(Sidebar, bpy.types.Panel):
             layout.operator("luzespecular.save_work_planes", icon="FILE_TEXT")
 
 
-def _draw_plane(box: bpy.types.UILayout, plane: bpy.types.Object, unit_scale: float, width: float) -> None:
+def _draw_plane(box: bpy.types.UILayout, plane: bpy.types.Object, scene: bpy.types.Scene, width: float) -> None:
     settings = plane.luzespecular.plane
     row = box.row()
     row.label(text=plane.name, icon="MESH_GRID", translate=False)
-    found = work_planes.statistics_of(plane, unit_scale)
+    found, results = work_planes.statistics_of(plane, placements.unit_scale(scene)), scene.luzespecular.results
     if found is None:
         draw_wrapped(box.column(align=True), iface_("Not read yet: solve"), "INFO", width)
         return
     if work_planes.is_stale(plane):
         draw_wrapped(box.column(align=True), iface_("Moved or edited since: solve again"), "ERROR", width)
-    column = box.column(align=True)
-    for name, value in (
+    rows = [
         (iface_("Minimum"), f"{label(found.minimum)} lx"),
         (iface_("Mean"), f"{label(found.mean)} lx"),
         (iface_("Maximum"), f"{label(found.maximum)} lx"),
         (iface_("Uniformity (min/mean)"), "–" if math.isnan(found.uniformity) else f"{found.uniformity:.2f}"),
         (iface_("Area"), f"{found.area:.2f} m²"),
         (iface_("{threshold} lx or more").format(threshold=label(settings.threshold)), f"{found.share_above:.0%}"),
-    ):
+    ]
+    if results.sky_illuminance > 0.0 and not results.has_sun:
+        rows.append((iface_("Mean daylight factor"), f"{100.0 * found.mean / results.sky_illuminance:.2f} %"))
+    column = box.column(align=True)
+    for name, value in rows:
         split = column.split(factor=0.62)
         split.label(text=name, translate=False)
         cell = split.column()

@@ -49,5 +49,6 @@ TEXTS = {
     "Maximum": "Máximo",
     "Uniformity (min/mean)": "Uniformidade (mín/média)",
     "Area": "Área",
+    "Mean daylight factor": "Fator médio de luz diurna",
     "{threshold} lx or more": "{threshold} lx ou mais",
 }
