@@ -6,6 +6,8 @@ from collections.abc import Iterable
 
 import bpy
 
+from ..translations import CONTEXT
+
 _LEVEL_ICONS = {"ERROR": "ERROR", "WARNING": "ERROR", "INFO": "INFO"}
 
 
@@ -15,6 +17,7 @@ class Sidebar:
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "LuzEspecular"
+    bl_translation_context = CONTEXT
 
 
 def draw_wrapped(column: bpy.types.UILayout, text: str, icon: str, width: float) -> None:

@@ -35,8 +35,7 @@ class LUZESPECULAR_PT_material(bpy.types.Panel):
         material = context.material
         settings = material.luzespecular
         layout.row().prop(settings, "source", expand=True)
-        column = layout.column()
-        column.use_property_split = True
+        column = layout.column()  # sliders show their long names inside
         optics = materials.read(material)
         if settings.source == "CUSTOM":
             column.prop(settings, "use_refractive_index")
@@ -53,9 +52,8 @@ class LUZESPECULAR_PT_material(bpy.types.Panel):
             _draw_optics(column.box().column(align=True), optics)
         _draw_sum(layout, optics)
         draw_notices(layout, materials.notices(material, optics), context.region.width)
-        row = layout.row(align=True)
-        row.menu("LUZESPECULAR_MT_library", icon="ASSET_MANAGER")
-        row.operator("luzespecular.values_from_shader", icon="COPYDOWN")
+        layout.menu("LUZESPECULAR_MT_library", icon="ASSET_MANAGER")
+        layout.operator("luzespecular.values_from_shader", icon="COPYDOWN")
 
 
 def _draw_sum(layout: bpy.types.UILayout, optics: materials.Optics) -> None:

@@ -41,7 +41,7 @@ class LuzSkySettings(bpy.types.PropertyGroup):
         update=_changed,
     )
     horizontal_illuminance: FloatProperty(
-        name="Sky Illuminance (lx)",
+        name="Sky (lx)",
         description="Diffuse illuminance of the sky alone on an open horizontal plane",
         min=0.0,
         default=10_000.0,
@@ -57,7 +57,7 @@ class LuzSkySettings(bpy.types.PropertyGroup):
         update=_changed,
     )
     sun_illuminance: FloatProperty(
-        name="Sun Illuminance (lx)",
+        name="Sun (lx)",
         description="Illuminance by the Sun on a plane that faces it",
         min=0.0,
         default=80_000.0,

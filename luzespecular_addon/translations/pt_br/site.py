@@ -32,7 +32,7 @@ TEXTS = {
     "Month of the year": "Mês do ano",
     "Year": "Ano",
     "Year of the date": "Ano da data",
-    "Time": "Hora",
+    "Time": "Tempo",
     "What the hour means": "O que a hora significa",
     "Solar": "Solar",
     "At 12 the Sun stands highest": "Às 12 o Sol está no ponto mais alto",

@@ -54,13 +54,13 @@ TEXTS = {
     "Moon and Spencer: the horizon is a third as bright as the zenith": (
         "Moon e Spencer: o horizonte tem um terço da luminância do zênite"
     ),
-    "Sky Illuminance (lx)": "Iluminância do céu (lx)",
+    "Sky (lx)": "Céu (lx)",
     "Diffuse illuminance of the sky alone on an open horizontal plane": (
         "Iluminância difusa, só do céu, em um plano horizontal desobstruído"
     ),
     "Sun": "Sol",
     "Let the Sun shine": "Deixar o Sol brilhar",
-    "Sun Illuminance (lx)": "Iluminância do Sol (lx)",
+    "Sun (lx)": "Sol (lx)",
     "Illuminance by the Sun on a plane that faces it": "Iluminância do Sol em um plano perpendicular aos seus raios",
     "Ground Reflectance": "Refletância do solo",
     "Reflectance of the open ground around the scene: 0.2 for grass or soil, 0 for no light from below": (
@@ -71,11 +71,11 @@ TEXTS = {
     "Overcast sky without Sun (traditional, type 16)": "Céu encoberto sem Sol (tradicional, tipo 16)",
     "One of the CIE standard general skies, by its number": "Um dos céus padrão gerais da CIE, por seu número",
     "Where the illuminances of sky and Sun come from": "De onde vêm as iluminâncias do céu e do Sol",
-    "By Model": "Por modelo",
+    "By Model": "Modelo",
     "Mean illuminances by date and Sun altitude (IES daylight availability, RP-21)": (
         "Iluminâncias médias pela data e pela altura do Sol (disponibilidade de luz natural da IES, RP-21)"
     ),
-    "By Value": "Por valor",
+    "By Value": "Valor",
     "The illuminances given here": "As iluminâncias informadas aqui",
     "Solar Disc": "Disco solar",
     "Soft edges of shadows by the disc of 0.533° that the Sun is; takes longer": (

@@ -1,0 +1,79 @@
+"""The pictures of the user guide: the seed room solved, all panels in both languages.
+
+python tools/gui.py --blender … tests/gui/steps_pictures.py --output docs/images
+"""
+
+import subprocess
+from pathlib import Path
+
+import bpy
+
+ROOM = Path(__file__).resolve().parents[2] / "examples" / "light_shelf" / "light_shelf.blend"
+
+
+def steps(window):
+    bpy.ops.wm.open_mainfile(filepath=str(ROOM))
+    yield 1.0
+    yield from window.open_tab()
+    scene = bpy.context.scene
+    scene.luzespecular.accuracy.fineness = "DRAFT"
+    state = bpy.context.window_manager.luzespecular
+    with window.override():
+        bpy.context.view_layer.objects.active = next(o for o in scene.objects if o.name.startswith("shelf_top"))
+        bpy.ops.luzespecular.solve("INVOKE_DEFAULT")
+    yield from window.until(lambda: not state.running, 200)
+    assert scene.luzespecular.results.rows
+    scene.luzespecular.site.hour = 10.0
+    yield 4.0
+    window.shot("blender")
+
+    # The sidebar from its top and to its end, with all panels open, and the panel of materials: in each language.
+    yield from _click(window, "north_offset", below=115)  # opens Sun Light
+    yield from _click(window, "fineness", below=-59)  # opens Surfaces
+    properties = window.area("PROPERTIES")
+    properties.spaces.active.context = "MATERIAL"
+    for language, ending in (("en_US", ""), ("pt_BR", "-pt")):
+        view = bpy.context.preferences.view
+        try:
+            view.language = language
+        except TypeError:
+            print("this Blender has no", language, flush=True)
+            continue
+        view.use_translate_interface = True
+        yield 1.0
+        for name, area, region, down in (
+            ("sidebar", "VIEW_3D", "UI", False),
+            ("sidebar-end", "VIEW_3D", "UI", True),
+            ("material", "PROPERTIES", "WINDOW", True),
+        ):
+            yield from _scroll(window, area, region, down)
+            whole = window.shot("whole")
+            _crop(whole, window, window.region(region, area), window.folder / f"{name}{ending}.png")
+            whole.unlink()
+        yield from _scroll(window, "VIEW_3D", "UI", False)
+
+
+def _click(window, name, below):
+    """Click some pixels below a property of the sidebar: steps."""
+    found = []
+    yield from window.find(name, found)
+    x, y = found[0][0], found[0][1] - below * bpy.context.preferences.system.ui_scale
+    window.move(x, y)
+    yield 0.2
+    window.press("LEFTMOUSE", x, y)
+    yield 0.5
+
+
+def _scroll(window, area, region, down):
+    with window.override(region, area):
+        for _ in range(60):
+            (bpy.ops.view2d.scroll_down if down else bpy.ops.view2d.scroll_up)(deltax=0, deltay=120)
+    window.area(area).tag_redraw()
+    yield 0.8
+
+
+def _crop(picture, window, region, path):
+    """Cut a region out of a picture of the screen."""
+    height = window.window.height
+    box = f"{region.width}x{region.height}+{region.x}+{height - region.y - region.height}"
+    subprocess.run(["convert", str(picture), "-crop", box, "+repage", "-strip", str(path)], check=True)
