@@ -13,6 +13,38 @@ _FEW = 48
 _LEAF = 4
 _MISS = -1
 
+_BLOCK = 80_000
+"""Rays times outlines that are looked at together: they stay in cache."""
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """Where rays got to by way of mirrors.
+
+    Attributes
+    ----------
+    points, directions : (n, 3) float
+        Of their last stretch.
+    outline : (n,) int
+        What they met at its end; -1 for nothing.
+    distance : (n,) float
+        To there, in lengths of the direction; inf for nothing.
+    factor : (n,) float
+        Product of the mirrors' reflectances.
+    mirrors : (n,) int
+        How many there were.
+    faint : (n,) bool
+        Not followed to the end.
+    """
+
+    points: np.ndarray
+    directions: np.ndarray
+    outline: np.ndarray
+    distance: np.ndarray
+    factor: np.ndarray
+    mirrors: np.ndarray
+    faint: np.ndarray
+
 
 @dataclass(frozen=True, eq=False)
 class RayScene:
@@ -59,15 +91,116 @@ class RayScene:
         distance : (n,) float
             In lengths of the direction; inf where nothing is met.
         """
-        outline = np.full(len(points), _MISS)
-        distance = np.full(len(points), np.inf)
+        points, directions = np.asarray(points, float), np.asarray(directions, float)
+        outline, distance = np.empty(len(points), np.int64), np.empty(len(points))
+        for some in self._blocks(len(points)):
+            outline[some], distance[some] = self._first(points[some].T, directions[some].T)
+        return outline, distance
+
+    def through_mirrors(self, points, directions, brightness, mirrors, reflectance, cutoff: float, most: int) -> Flight:
+        """Follow rays from mirror to mirror, up to what is none.
+
+        Parameters
+        ----------
+        points, directions : (n, 3) float
+        brightness : (n,) float
+            Product of reflectances and transmittances on the way here.
+        mirrors : (n,) int
+            Mirrors and panes on the way here.
+        reflectance : (2, o) float
+            Of outlines' fronts and backs where they are mirrors and nothing else; 0 where rays end.
+        cutoff : float
+            Rays of less brightness are not followed.
+        most : int
+            Nor those with so many mirrors on the way.
+
+        Returns
+        -------
+        Flight
+        """
+        n = len(points)
+        flight = Flight(
+            np.empty((n, 3)),
+            np.empty((n, 3)),
+            np.full(n, _MISS),
+            np.full(n, np.inf),
+            np.ones(n),
+            np.zeros(n, np.int64),
+            np.zeros(n, bool),
+        )
+        for some in self._blocks(n):
+            start = points[some].T, directions[some].T
+            self._fly(flight, some.start, *start, brightness[some], most - mirrors[some], reflectance, cutoff)
+        return flight
+
+    def _blocks(self, count: int) -> list[slice]:
+        step = max(1, _BLOCK // max(len(self.vertices), 1))
+        return [slice(first, first + step) for first in range(0, count, step)]
+
+    def _fly(self, flight: Flight, first: int, points, directions, brightness, left, reflectance, cutoff) -> None:
+        """Follow a block of rays; points and directions (3, n), as NumPy is fastest along long rows."""
+        ray, factor, flown = first + np.arange(points.shape[1]), np.ones(points.shape[1]), 0
+        while len(ray):
+            outline, distance = self._first(points, directions)
+            normal = self.normals[outline].T
+            slope = (normal * directions).sum(axis=0)
+            share = np.where(slope < 0, reflectance[0, outline], reflectance[1, outline])
+            share[outline < 0] = 0.0
+            ends = np.flatnonzero(share <= 0)
+            onward = np.flatnonzero(share > 0)
+            done = ray[ends]
+            flight.points[done], flight.directions[done] = points[:, ends].T, directions[:, ends].T
+            flight.outline[done], flight.distance[done] = outline[ends], distance[ends]
+            flight.factor[done], flight.mirrors[done] = factor[ends], flown
+            ray, factor, flown = ray[onward], factor[onward] * share[onward], flown + 1
+            points = points[:, onward] + distance[onward] * directions[:, onward]
+            directions = directions[:, onward] - 2 * slope[onward] * normal[:, onward]
+            brightness, left = brightness[onward] * share[onward], left[onward]
+            faint = (brightness < cutoff) | (left <= flown)
+            if faint.any():
+                lost, kept = ray[faint], ~faint
+                flight.faint[lost], flight.factor[lost], flight.mirrors[lost] = True, factor[faint], flown
+                flight.points[lost], flight.directions[lost] = points[:, faint].T, directions[:, faint].T
+                ray, factor, brightness, left = ray[kept], factor[kept], brightness[kept], left[kept]
+                points, directions = points[:, kept], directions[:, kept]
+
+    def _first(self, points, directions) -> tuple[np.ndarray, np.ndarray]:
+        """Outlines that rays ``(3, n)`` meet first, and how far along."""
         if len(self.vertices) <= _FEW:
-            for o in range(len(self.vertices)):
-                self._meet(np.arange(len(points)), np.full(len(points), o), points, directions, outline, distance)
-            return outline, distance
+            return self._first_of_few(points, directions)
+        outline = np.full(points.shape[1], _MISS)
+        distance = np.full(points.shape[1], np.inf)
+        points, directions = np.ascontiguousarray(points.T), np.ascontiguousarray(directions.T)
         for ray, candidate in self._tree.candidates(points, directions):
             self._meet(ray, candidate, points, directions, outline, distance)
         return outline, distance
+
+    def _first_of_few(self, points, directions) -> tuple[np.ndarray, np.ndarray]:
+        """As `_first`: planes by distance, until one is met within its outline."""
+        height = self.offsets[:, None] - self.normals @ points
+        with np.errstate(divide="ignore", invalid="ignore"):
+            along = height / (self.normals @ directions)
+        ahead = along > 0
+        ahead &= np.abs(height, out=height) > self.tolerance
+        along[~ahead] = np.inf
+        outline = along.argmin(axis=0)
+        distance = along[outline, np.arange(len(outline))]
+        unsure = np.flatnonzero(np.isfinite(distance))
+        unsure = unsure[~self._within(outline[unsure], points[:, unsure], directions[:, unsure], distance[unsure])]
+        while len(unsure):
+            along[outline[unsure], unsure] = np.inf
+            outline[unsure] = along[:, unsure].argmin(axis=0)
+            distance[unsure] = along[outline[unsure], unsure]
+            unsure = unsure[np.isfinite(distance[unsure])]
+            unsure = unsure[~self._within(outline[unsure], points[:, unsure], directions[:, unsure], distance[unsure])]
+        outline[np.isinf(distance)] = _MISS
+        return outline, distance
+
+    def _within(self, outline, points, directions, distance) -> np.ndarray:
+        """(n,) bool: whether rays that meet an outline's plane meet the outline."""
+        inward, start = self._edges
+        height = np.einsum("nwc,cn->wn", inward[outline], points + distance * directions)
+        return (height >= start[outline].T).all(axis=0)
 
     def pulled_inside(self, outline: int, places, margin) -> np.ndarray:
         """Places in an outline's plane, moved to within the outline where they lie outside.

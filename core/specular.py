@@ -17,7 +17,7 @@ from .arrays import pick
 from .globe import Hemisphere
 from .materials import Material
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
-from .rays import RayScene
+from .rays import Flight, RayScene
 from .visibility import SHARED, Partial, View, look
 
 DEEPEST_CHAIN = 200
@@ -26,7 +26,8 @@ DEEPEST_CHAIN = 200
 MANY_OUTLINES = 2_500
 """Scenes of more outlines are looked at ray by ray."""
 
-_FEW_BEAMS = 2_500
+_FEW_BEAMS = 5_000
+"""Fewer are followed one by one, after two mirrors or panes, without regard to edges that cross them."""
 
 _MOST_IMAGES = 80
 _DEEPEST_IMAGE = 40
@@ -65,6 +66,16 @@ class Outlines:
     def rays(self) -> RayScene:
         """The outlines, to shoot single rays at."""
         return RayScene(self.vertices, self.normals, self.offsets, self.tolerance)
+
+    @cached_property
+    def plain_mirrors(self) -> np.ndarray:
+        """(2, o) float: reflectance of fronts and backs that do nothing but mirror, 0 for all others."""
+        plain = np.zeros((2, len(self.materials)))
+        for o, m in enumerate(self.materials):
+            if m.refractive_index is None and not (m.is_transparent or m.diffuse_reflectance or m.exitance):
+                plain[0, o] = m.specular_reflectance
+                plain[1, o] = m.specular_reflectance if self.two_sided[o] else 0.0
+        return plain
 
     @cached_property
     def whole(self) -> Obstacles:
@@ -317,6 +328,18 @@ class _Rays:
         """Some of the rays."""
         return _Rays(*(getattr(self, f.name)[index] for f in fields(self)))
 
+    def flown(self, flight: Flight) -> _Rays:
+        """The rays on the last stretch of their flight."""
+        return _Rays(
+            self.rows,
+            flight.points,
+            flight.directions,
+            self.weights * flight.factor,
+            self.throughput * flight.factor,
+            self.mirrors + flight.mirrors,
+            self.depth + flight.mirrors,
+        )
+
     def onward(self, places, share, normal, kind: str) -> _Rays:
         """The rays after a mirror or a pane."""
         mirror = kind == "mirror"
@@ -446,9 +469,20 @@ class GroupSight:
         none = Beams.of(self.hemisphere).take(np.zeros(0, np.int64))
         while len(rays.rows):
             checkpoint()
-            outline, distance = self.outlines.rays.nearest(rays.points, rays.directions)
-            kinds = self.limits.kind(rays.mirrors)
-            for kind in np.unique(kinds):
+            flight = self.outlines.rays.through_mirrors(
+                rays.points,
+                rays.directions,
+                rays.throughput,
+                rays.depth,
+                self.outlines.plain_mirrors,
+                self.limits.cutoff,
+                DEEPEST_CHAIN,
+            )
+            rays = rays.flown(flight)
+            truncated += np.bincount(rays.rows[flight.faint], rays.weights[flight.faint], minlength=len(truncated))
+            outline, distance = flight.outline, flight.distance
+            kinds = np.where(flight.faint, -1, self.limits.kind(rays.mirrors))
+            for kind in np.unique(kinds[kinds >= 0]):
                 mine = np.flatnonzero(kinds == kind)
                 yield _ray_sighting(self.outlines, rays.take(mine), outline[mine], int(kind), none)
             met = np.flatnonzero(outline >= 0)

@@ -67,3 +67,42 @@ def test_edges_let_no_ray_through():
         eye = np.array([0.3, 0.55, 0.41])
         found, _ = scene.nearest(np.broadcast_to(eye, targets.shape), targets - eye)
         assert (found >= 0).all()
+
+
+@pytest.mark.parametrize("outside", [0, 60])
+def test_flights_are_what_single_steps_make_of_them(outside):
+    """Between four mirrors, past a leaf, out at the top; with few outlines and with many."""
+    walls = box_polygons()
+    del walls["ceiling"]
+    leaf = np.array([[0.3, 0.3, 0.6], [0.6, 0.4, 0.6], [0.5, 0.7, 0.7]])
+    scene = ray_scene([*walls.values(), leaf, *(p * 0.5 + 3 for p in leaves(outside))])
+    reflectance = np.zeros((2, len(scene.vertices)))
+    reflectance[0, 1:5] = 0.9, 0.8, 0.7, 0.6
+    rng = np.random.default_rng(3)
+    points, directions = rng.uniform(0.1, 0.9, (500, 3)), rng.normal(size=(500, 3))
+    points[:, 2] *= 0.5
+    brightness, before = rng.uniform(0.5, 1, 500), rng.integers(0, 3, 500)
+    flight = scene.through_mirrors(points, directions, brightness, before, reflectance, 0.05, 8)
+    place, way, factor, count = points.copy(), directions.copy(), np.ones(500), np.zeros(500, int)
+    faint, flying = np.zeros(500, bool), np.ones(500, bool)
+    while flying.any():
+        outline, distance = scene.nearest(place, way)
+        normal = scene.normals[outline]
+        slope = np.einsum("nc,nc->n", normal, way)
+        share = np.where((outline >= 0) & (slope < 0), reflectance[0, outline], 0.0)
+        flying &= share > 0
+        place[flying] += distance[flying, None] * way[flying]
+        way[flying] -= 2 * slope[flying, None] * normal[flying]
+        factor[flying] *= share[flying]
+        count[flying] += 1
+        faint |= flying & ((brightness * factor < 0.05) | (before + count >= 8))
+        flying &= ~faint
+    outline, distance = scene.nearest(place, way)
+    np.testing.assert_array_equal(flight.faint, faint)
+    assert 0 < faint.sum() < 500 and (flight.outline[~faint] == 0).any() and (flight.outline[~faint] == 5).any()
+    np.testing.assert_array_equal(flight.mirrors, count)
+    np.testing.assert_allclose(flight.factor, factor, rtol=1e-12)
+    np.testing.assert_allclose(flight.points, place, atol=1e-11)
+    np.testing.assert_allclose(flight.directions, way, atol=1e-11)
+    np.testing.assert_array_equal(flight.outline[~faint], outline[~faint])
+    np.testing.assert_allclose(flight.distance[~faint], distance[~faint], rtol=1e-9)

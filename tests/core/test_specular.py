@@ -10,7 +10,7 @@ import luzespecular as luz
 from luzespecular.geometry import make_geometry
 from luzespecular.globe import Globe
 from luzespecular.planes import find_planes
-from luzespecular.specular import ChainLimits, exact_mirrors
+from luzespecular.specular import ChainLimits, Outlines, exact_mirrors
 
 UP, DOWN, NORTH, SOUTH = np.array([[0, 0, 1.0], [0, 0, -1], [0, 1, 0], [0, -1, 0]])
 CLEAR = luz.Daylight(sky=luz.CIESky(12, sun_altitude=40, sun_azimuth=130, horizontal_illuminance=10_000))
@@ -294,3 +294,31 @@ def test_single_rays_see_what_shared_views_see(monkeypatch):
     np.testing.assert_allclose(one, other, atol=0.02)
     assert not np.array_equal(one, other), "two ways"
     assert math.isclose(shared.truncated.sum(), single.truncated.sum(), abs_tol=0.02 * len(shared.truncated))
+
+
+def test_flights_from_mirror_to_mirror_leave_out_nothing(monkeypatch):
+    """As when each mirror is a stop of its own; one is two-sided, one diffuse besides, one a pane."""
+    materials = {
+        "west": mirror(0.9),
+        "east": mirror(0.8),
+        "south": luz.Material(specular_reflectance=0.5, diffuse_reflectance=0.3),
+        "floor": luz.Material(diffuse_reflectance=0.4),
+        "ceiling": luz.Material(regular_transmittance=0.8),
+    }
+    room = box(without=("north",), **materials)
+    room.add(
+        "shelf",
+        np.array([[0.2, 0.3, 0.6], [0.8, 0.3, 0.6], [0.8, 0.6, 0.5], [0.2, 0.6, 0.5]]),
+        mirror(0.7),
+        two_sided=True,
+    )
+    found = []
+    for plain in (True, False):
+        if not plain:
+            stops = lambda outlines: np.zeros((2, len(outlines.materials)))  # noqa: E731
+            monkeypatch.setattr(Outlines, "plain_mirrors", property(stops))
+        result = prepare_coarse(room, bands=20).solve(CLEAR)
+        points = np.array([[0.5, 0.5, 0.01], [0.3, 0.4, 0.3], [0.7, 0.45, 0.9]])
+        found.append(np.concatenate([result.illuminance, result.at(points, np.broadcast_to(UP, (3, 3)))]))
+        assert abs(result.balance.defect) < 1e-3
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-5)
