@@ -87,7 +87,7 @@ def prepare(
     Cancelled
         Where ``progress`` says so.
     """
-    checked_scene(scene)
+    scene = Scene(dict(checked_scene(scene).surfaces))  # as it stands: it may grow while this runs
     options = Options.checked(
         scene,
         bands=bands,

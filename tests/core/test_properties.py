@@ -201,3 +201,82 @@ def test_an_opening_lets_in_what_it_shows(size, reflectance):
     balance = bright.solve(UNIFORM).balance
     assert balance.entering == pytest.approx(entering, rel=0.02)
     assert 0 < balance.escaped < reflectance * balance.entering
+
+
+SIDES = st.tuples(*[st.floats(1, 4)] * 3)
+
+
+@FEW
+@given(SIDES, st.floats(0.05, 0.9))
+def test_form_factors_are_reciprocal(size, reflectance):
+    """A_i F_ij = A_j F_ji, for whole surfaces within what means over areas err."""
+    transfer = prepare_coarse(box(luz.Material(diffuse_reflectance=reflectance), size), elements=600, patches=150)
+    geometry = transfer.geometry
+    areas = geometry.patch_areas
+    surface = np.zeros(len(areas), int)
+    patch = geometry.targets.patches.of_element
+    surface[patch[patch >= 0]] = geometry.element_surface[patch >= 0]
+    member = (surface == np.arange(6)[:, None]).astype(float)
+    flux = member @ (areas[:, None] * transfer.patch_factors) @ member.T
+    np.testing.assert_allclose(flux, flux.T, rtol=0.02, atol=1e-3 * areas.sum())
+
+
+@FEW
+@given(st.floats(0, 5000), st.floats(0, 9e4), st.floats(5, 85), st.floats(0, 360))
+def test_sky_and_sun_superpose(luminance, normal_illuminance, altitude, azimuth):
+    transfer = prepare_coarse(room(), elements=100, patches=60, bands=12)
+    sky, sun = (
+        luz.UniformSky(luminance),
+        luz.Sun(altitude=altitude, azimuth=azimuth, normal_illuminance=normal_illuminance),
+    )
+    nothing = transfer.solve(luz.Daylight()).illuminance
+    one, two, both = (
+        transfer.solve(light, tolerance=1e-8).illuminance - nothing
+        for light in (luz.Daylight(sky=sky), luz.Daylight(sun=sun), luz.Daylight(sky=sky, sun=sun))
+    )
+    np.testing.assert_allclose(both, one + two, rtol=1e-3, atol=1e-6 * (luminance + normal_illuminance) + 1e-3)
+
+
+@FEW
+@given(st.tuples(*[st.floats(0.3, 2.2)] * 3), st.floats(0.2, 0.7), st.booleans())
+def test_a_black_blocker_never_adds_light(place, side, upright):
+    corner = np.array(
+        [[0, 0, 0], [side, 0, 0], [side, 0, side], [0, 0, side]]
+        if upright
+        else [[0, 0, 0], [side, 0, 0], [side, side, 0], [0, side, 0]]
+    )
+    with_it = room()
+    with_it.add("blocker", corner + np.asarray(place), luz.Material())
+    without, blocked = lux(room(), elements=300), lux(with_it, elements=300)
+    for name, mean in without[1].items():
+        assert blocked[1][name] <= mean * 1.01 + 0.5, name
+
+
+@FEW
+@given(SHARES)
+def test_a_symmetric_room_is_lit_symmetrically(shares):
+    """The room and the light are alike to the left and to the right."""
+    _, means = lux(room(shares), daylight=light(azimuth=0.0))
+    assert means["west"] == pytest.approx(means["east"], rel=0.02)
+
+
+@FEW
+@given(SIDES, SHARES)
+def test_lumens_add_up(size, shares):
+    floor, wall, mirror = shares
+    scene = box(
+        luz.Material(diffuse_reflectance=wall), size, without=("north",), floor=luz.Material(diffuse_reflectance=floor)
+    )
+    scene.add(
+        "mirror",
+        [
+            [0, 0, size[2] / 2],
+            [size[0], 0, size[2] / 2],
+            [size[0], size[1] / 2, size[2] / 2],
+            [0, size[1] / 2, size[2] / 2],
+        ],
+        luz.Material(specular_reflectance=mirror),
+    )
+    balance = prepare_coarse(scene, elements=600, patches=150).solve(light()).balance
+    assert abs(balance.defect) < 5e-3
+    assert min(balance.absorbed.values()) >= 0 and balance.escaped >= 0
