@@ -42,7 +42,7 @@ PLACES = (
     Place("Johannesburg", -26.202, 28.044, 2.0),
     Place("Lisboa", 38.717, -9.133, 0.0),
     Place("London", 51.509, -0.126, 0.0),
-    Place("Ciudad de México", 19.428, -99.128, -6.0),
+    Place("México", 19.428, -99.128, -6.0),
     Place("New York", 40.714, -74.006, -5.0),
     Place("Oslo", 59.913, 10.746, 1.0),
     Place("Singapore", 1.290, 103.850, 8.0),

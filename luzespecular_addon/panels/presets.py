@@ -14,7 +14,14 @@ class _Presets(PresetPanel):
 
     def _draw_saved(self, context: bpy.types.Context) -> None:
         self.layout.label(text="Own presets")
-        super().draw(context)
+        if bpy.utils.preset_paths(self.preset_subdir):
+            super().draw(context)
+            return
+        # Blender would call it a missing path that none has been saved yet.
+        row, state = self.layout.row(align=True), context.window_manager
+        row.emboss = "NORMAL"
+        row.prop(state, "preset_name", text="")
+        row.operator(self.preset_add_operator, text="", icon="ADD").name = state.preset_name
 
 
 class LUZESPECULAR_PT_site_presets(_Presets, bpy.types.Panel):
