@@ -290,7 +290,7 @@ def _chains(surfaces, planes: Planes, rays: RayScene, points: np.ndarray, toward
         on = (outline >= 0) & (slope < 0) & (weight * mirror[sheet] >= _CUTOFF)
         if not on.any():
             break
-        place = (place + distance[:, None] * way)[on]
+        place = place[on] + distance[on, None] * way[on]
         way = (way - 2 * slope[:, None] * normal)[on]
         weight = (weight * mirror[sheet])[on]
         steps, deepest = steps + int(on.sum()), deepest + 1

@@ -116,3 +116,13 @@ def test_warnings_go_with_the_result_and_errors_stop(caplog):
 def test_what_is_no_scene():
     with pytest.raises(luz.SceneError, match="check needs a luzespecular"):
         luz.check([])
+
+
+def test_a_mesh_that_random_trials_found():
+    """Looks along an axis that meet nothing, while others are mirrored on."""
+    vertices = [[-1, 2, 1], [1, -1, 0], [0, 0, 1], [2, -1, -2], [0, 1, -2], [-1, -1, 1], [2, 0, 0]]
+    faces = [[0, 4, 3], [0, 2, 3, 3, 1], [0, 5, 0, 6, 5], [2, 5, 3, 4, 3, 3], [3, 3, 0, 3, 6], [0, 5, 3, 1, 3, 2]]
+    scene = luz.Scene()
+    scene.add("mesh", vertices, luz.Material(diffuse_reflectance=0.5, specular_reflectance=0.4), faces=faces)
+    with np.errstate(all="raise"):
+        assert "not flat" in {finding.kind for finding in luz.check(scene)}

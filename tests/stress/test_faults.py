@@ -22,13 +22,13 @@ def room():
 
 
 def counted(act):
-    """How often a run reports."""
+    """The stages of a run's reports."""
     calls = []
     act(lambda fraction, stage: calls.append(stage) or True)
     return calls
 
 
-def test_cancelling_at_every_report_leaves_all_as_it_was():
+def test_cancelling_at_any_stage_leaves_all_as_it_was():
     scene = room()
     before = {name: surface.pieces.copy() for name, surface in scene.surfaces.items()}
     transfer = prepare_coarse(scene, elements=60, bands=8)
@@ -41,13 +41,11 @@ def test_cancelling_at_every_report_leaves_all_as_it_was():
         return transfer.solve(SUNNY, progress=progress)
 
     for act in (prepare, solve):
-        stages = counted(act)
-        places = [stages.index(stage) for stage in dict.fromkeys(stages)]
-        for stop in {*places, len(stages) // 2, len(stages) - 1}:
-            seen = []
+        stages = list(dict.fromkeys(counted(act)))
+        assert len(stages) > 3
+        for stop in stages:
             with pytest.raises(luz.Cancelled, match="Cancelled"):
-                act(lambda fraction, stage, stop=stop, seen=seen: seen.append(stage) or len(seen) <= stop)
-            assert len(seen) >= stop
+                act(lambda fraction, stage, stop=stop: stage != stop)
     np.testing.assert_array_equal(transfer.solve(SUNNY).illuminance, usual)
     for name, pieces in before.items():
         np.testing.assert_array_equal(scene.surfaces[name].pieces, pieces)
@@ -77,6 +75,7 @@ class FullDisk(io.RawIOBase):
         return len(data)
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # zipfile, as it is thrown away
 @pytest.mark.parametrize("kind", ["csv", "json", "npz", "transfer"])
 def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch, kind):
     path = tmp_path / f"result.{kind}"
