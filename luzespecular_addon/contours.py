@@ -23,11 +23,14 @@ VALUE = "illuminance"
 LABEL = "label"
 """FLOAT attribute of the EDGE domain: 1 where a label stands."""
 
+NORMAL = "normal"
+"""FLOAT_VECTOR attribute of the EDGE domain: normal of the face that the line lies on."""
+
 _LIFT = 1e-3
 """How far lines stand off the faces, over the extent of all that is shown."""
 
-_LABELS_APART = 0.12
-"""Least distance of labels, over the same."""
+_LABELS_APART = 0.06
+"""Least distance of places for labels, over the same; which are used depends on the view."""
 
 
 def find(scene: bpy.types.Scene) -> bpy.types.Object | None:
@@ -63,6 +66,7 @@ def update(scene: bpy.types.Scene, shown: Iterable[Shown], scale: colours.Colour
     mesh = object_.data
     mesh_arrays.replace_edges(mesh, ends)
     mesh_arrays.write_edge_floats(mesh, VALUE, lines.values)
+    mesh_arrays.write_edge_vectors(mesh, NORMAL, normals)
     mesh_arrays.write_edge_floats(mesh, LABEL, np.isin(np.arange(len(ends)), labels))
     mesh.update_tag()
 

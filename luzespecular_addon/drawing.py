@@ -68,7 +68,7 @@ def table(rows: list[tuple[str, str]], left: float, bottom: float, heading: str 
     width, height = table_size(rows, heading)
     padding, line = PADDING * size(), LINE * size()
     gpu.state.blend_set("ALPHA")
-    rectangle(left, bottom, width, height, PANEL_COLOUR)
+    rectangle(left, bottom, width, height, (*PANEL_COLOUR[:3], 1.0))  # labels below it would disturb
     y = bottom + height - line
     if heading:
         text(heading, left + padding, y)

@@ -88,7 +88,7 @@ def parse_levels(text: str) -> list[float]:
     return sorted(levels)
 
 
-def label_edges(lines: IsoLines, spacing: float, most: int = 24) -> NDArray[np.intp]:
+def label_edges(lines: IsoLines, spacing: float, most: int = 96) -> NDArray[np.intp]:
     """Choose the pieces that carry labels: none where lines crowd, no two nearer than `spacing`, at most `most`.
 
     Labels of one level keep twice the distance; levels take turns.

@@ -255,6 +255,22 @@ def write_edge_floats(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
     _attribute(mesh, name, "FLOAT", "EDGE").data.foreach_set("value", np.ascontiguousarray(values, np.float32))
 
 
+def write_edge_vectors(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None:
+    """Write (e, 3) floats as a FLOAT_VECTOR attribute of the EDGE domain, made anew if absent."""
+    flat = np.ascontiguousarray(values, np.float32).reshape(-1)
+    _attribute(mesh, name, "FLOAT_VECTOR", "EDGE").data.foreach_set("vector", flat)
+
+
+def read_edge_vectors(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float32] | None:
+    """Read a FLOAT_VECTOR attribute of the EDGE domain, (e, 3); None where there is no such attribute."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != "EDGE" or len(attribute.data) != len(mesh.edges):
+        return None
+    values = np.empty((len(mesh.edges), 3), np.float32)
+    attribute.data.foreach_get("vector", values.reshape(-1))
+    return values
+
+
 def read_edge_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float32] | None:
     """Read a FLOAT attribute of the EDGE domain, (e,); None where there is no such attribute."""
     attribute = mesh.attributes.get(name)

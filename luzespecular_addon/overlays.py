@@ -14,8 +14,8 @@ _HALO, _CORE = (0.0, 0.0, 0.0, 0.55), (1.0, 1.0, 1.0, 0.95)
 _HALO_WIDTH, _CORE_WIDTH = 3.0, 1.3
 _MARK = 4
 _DEPTH_TOLERANCE = 1e-6
-_LABEL_ROOM = np.array([56.0, 20.0])
-"""Width and height that a label needs [pixels at a resolution scale of 1]."""
+_LABEL_ROOM = np.array([90.0, 36.0])
+"""Least distance of labels across and along the screen [pixels at a resolution scale of 1]."""
 
 _handles: list[object] = []
 
@@ -42,53 +42,58 @@ def _draw_lines() -> None:
     mesh = object_.data
     ends = mesh_arrays.edge_ends(mesh)
     values, labels = (mesh_arrays.read_edge_floats(mesh, name) for name in (contours.VALUE, contours.LABEL))
-    if values is None or labels is None:
+    normals = mesh_arrays.read_edge_vectors(mesh, contours.NORMAL)
+    if values is None or labels is None or normals is None:
         return
+    if space.shading.show_backface_culling:  # lines go with their faces
+        facing = _faces_viewer(ends.mean(axis=1), normals)
+        ends, values, labels = ends[facing], values[facing], labels[facing]
     chosen = np.flatnonzero(labels)
-    places = ends[chosen].mean(axis=1)
-    seen = _seen(places)
+    places, levels = ends[chosen].mean(axis=1), values[chosen]
+    labelled = _labelled(places, levels)
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("LESS_EQUAL")
     drawing.lines(ends, _HALO_WIDTH, _HALO)
     drawing.lines(ends, _CORE_WIDTH, _CORE)
     gpu.state.depth_test_set("NONE")
     with drawing.in_pixels():
-        shown = _pixels(places[seen])
-        for row in _apart(shown, _LABEL_ROOM * drawing.size()):
-            drawing.tag(label(float(values[chosen][seen][row])), *map(float, shown[row]))
+        for row, (x, y) in labelled:
+            drawing.tag(label(float(levels[row])), x, y)
     gpu.state.blend_set("NONE")
 
 
-def _apart(places: np.ndarray, room: np.ndarray) -> list[int]:
-    """Return which of the labels at places, (m, 2) pixels, can be written without one covering another."""
-    kept: list[int] = []
-    for row, place in enumerate(places):
-        if not (np.abs(places[kept] - place) < room).all(axis=1).any():
-            kept.append(row)
-    return kept
+def _faces_viewer(places: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Whether faces at places, (m, 3), show their fronts."""
+    view = bpy.context.region_data
+    from_view = view.view_matrix.inverted()
+    if view.is_perspective:
+        towards = np.array(from_view.translation) - places
+    else:
+        towards = np.array(from_view.to_3x3().col[2])[None]
+    return np.einsum("mc,mc->m", np.broadcast_to(towards, normals.shape), normals) > 0.0
 
 
-def _seen(places: np.ndarray) -> np.ndarray:
-    """Whether points in space, (m, 3), are in the view with nothing drawn before them."""
+def _labelled(places: np.ndarray, levels: np.ndarray) -> list[tuple[int, tuple[float, float]]]:
+    """Return which labels are written and at which pixels: those that nothing hides, with room between them."""
     region = bpy.context.region
     clip = _clip(places)
     inside = (clip[:, 3] > 0.0) & (np.abs(clip[:, :2]) < clip[:, 3:]).all(axis=1)
-    if not inside.any():
-        return inside
-    depths = 0.5 + 0.5 * clip[:, 2] / np.where(inside, clip[:, 3], 1.0)
+    at = np.zeros((len(places), 3))
+    at[inside] = 0.5 + 0.5 * clip[inside, :3] / clip[inside, 3:]
+    at[:, :2] *= (region.width, region.height)
     buffer = gpu.state.active_framebuffer_get()
     left, bottom = gpu.state.viewport_get()[:2]
+    room = _LABEL_ROOM * drawing.size()
+    kept: list[int] = []
     for row in np.flatnonzero(inside):
-        x, y = ((0.5 + 0.5 * clip[row, :2] / clip[row, 3]) * (region.width, region.height)).astype(int)
-        before = buffer.read_depth(left + int(x), bottom + int(y), 1, 1)
-        inside[row] = depths[row] <= np.array(before).item() + _DEPTH_TOLERANCE
-    return inside
-
-
-def _pixels(places: np.ndarray) -> np.ndarray:
-    """Return where points in space, (m, 3), stand in the region, (m, 2) pixels."""
-    clip, region = _clip(places), bpy.context.region
-    return (0.5 + 0.5 * clip[:, :2] / clip[:, 3:]) * (region.width, region.height)
+        # Those of one level keep twice the distance.
+        apart = room * np.where(levels[kept] == levels[row], 2.0, 1.0)[:, None]
+        if (np.abs(at[kept, :2] - at[row, :2]) < apart).all(axis=1).any():
+            continue
+        before = buffer.read_depth(left + int(at[row, 0]), bottom + int(at[row, 1]), 1, 1)
+        if at[row, 2] <= np.array(before).item() + _DEPTH_TOLERANCE:
+            kept.append(int(row))
+    return [(row, (float(at[row, 0]), float(at[row, 1]))) for row in kept]
 
 
 def _clip(places: np.ndarray) -> np.ndarray:

@@ -209,6 +209,10 @@ def test_lines_lie_where_the_surfaces_have_their_values(addon, bpy, solved):
     assert set(addon.mesh_arrays.read_edge_floats(lines.data, "illuminance").tolist()) <= {3000.0, 6000.0}
     places = addon.mesh_arrays.vertex_positions(lines.data)
     assert len(places) > 20
+    normals = addon.mesh_arrays.read_edge_vectors(lines.data, "normal")
+    lit_floor = (places[::2, 2] > 0.0) & (places[::2, 2] < 0.05)  # lines stand off the side that is lit
+    assert lit_floor.sum() > 10
+    np.testing.assert_allclose(np.abs(normals[lit_floor] - [0.0, 0.0, 1.0]).max(), 0.0, atol=1e-5)
     on_floor = places[np.abs(places[:, 2]) < 0.05]
     assert len(on_floor) > 10
     assert on_floor.min() > -0.05

@@ -1,4 +1,7 @@
-"""Look at results: a work plane, iso-lux lines, the probe with the mouse, errors, own meshes, renders; then clear."""
+"""Look at results: a work plane, iso-lux lines, the probe with the mouse, errors, own meshes, renders; then clear.
+
+``probe.png`` is the picture in the user guide.
+"""
 
 import importlib
 from pathlib import Path
