@@ -29,6 +29,9 @@ MANY_OUTLINES = 2_500
 _FEW_BEAMS = 5_000
 """Fewer are followed one by one, after two mirrors or panes, without regard to edges that cross them."""
 
+_LOOKED_INTO = 4
+"""So are all after more mirrors or panes than this, which show little light each."""
+
 _MOST_IMAGES = 80
 _DEEPEST_IMAGE = 40
 _WALLS_OF_BOX = 6
@@ -539,7 +542,8 @@ class GroupSight:
                         window = None if window is None else reflect(window, normal).astype(np.float32)
                     mirrors = s.mirrors + (kind == "mirror")
                     partial = self._partial(onward, direction, points, int(o), window)
-                    if chain and np.count_nonzero(onward.weights) < _FEW_BEAMS:
+                    few = np.count_nonzero(onward.weights) < _FEW_BEAMS
+                    if chain and (few or len(chain) >= _LOOKED_INTO):
                         left.append(
                             _Rays.beyond(
                                 rows, points, beams, onward.weights, partial, product, mirrors, past, len(chain) + 1
