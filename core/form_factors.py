@@ -271,6 +271,8 @@ class Conservation:
             landed += share[first : first + _ROWS] @ some
             seen[first : first + _ROWS] = some.sum(axis=1)
         sent = geometry.patch_sums(area * (1 - lost))
+        for profile in geometry.targets.patches.profiles:
+            profile.evened(sent, landed)
         missing = (sent - landed) * trusted(1 - sent / np.maximum(geometry.patch_areas, 1e-300))
         total = float(share @ seen)
         return cls(kept, lost, seen / total if total > 0 else seen, missing)

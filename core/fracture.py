@@ -9,6 +9,8 @@ import numpy as np
 
 from . import polygons
 from .errors import SceneError
+from .grid import Grid
+from .nearness import closeness
 from .planes import Planes
 
 DEFAULT_FACES = 10_000
@@ -23,64 +25,13 @@ FEWEST_ELEMENTS = 4_000
 ELEMENTS_PER_PLAIN_SURFACE = 96
 """Receivers inside a surface that neither emits nor reflects diffusely, and so is not cut itself."""
 
+MOST_FINER = 40_000
+"""Elements at most that a scene gets beyond those for its faces, where other surfaces are near."""
 
 _FEWEST_CELLS = 4
 _MOST_SLENDER = 4.0
-
-
-@dataclass(frozen=True, eq=False)
-class Grid:
-    """A run of triangles that are the halves of rows × columns cells.
-
-    Attributes
-    ----------
-    first : int
-        The first triangle; those of a cell follow each other, then those of the next column.
-    rows, columns : int
-    corner : (3,) float
-        Where the first cell begins.
-    along_rows, along_columns : (3,) float
-        From a cell to the one in the next row, and in the next column.
-    """
-
-    first: int
-    rows: int
-    columns: int
-    corner: np.ndarray
-    along_rows: np.ndarray
-    along_columns: np.ndarray
-
-    corners = (((0, 0), (1, 0), (1, 1)), ((0, 0), (1, 1), (0, 1)))
-    """Of a cell's halves, in cells along either axis."""
-
-    @property
-    def elements(self) -> slice:
-        """Its triangles."""
-        return slice(self.first, self.first + 2 * self.rows * self.columns)
-
-    @property
-    def normal(self) -> np.ndarray:
-        """(3,) float, unit."""
-        normal = polygons.cross(self.along_rows, self.along_columns)
-        return normal / np.linalg.norm(normal)
-
-    @property
-    def triangles(self) -> np.ndarray:
-        """(2 · rows · columns, 3, 3) float: the halves of the cells."""
-        rows, columns = np.indices((self.rows + 1, self.columns + 1))
-        corner = self.corner + rows[:, :, None] * self.along_rows + columns[:, :, None] * self.along_columns
-        p, q, r, s = corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]
-        cells = np.stack([np.stack([p, q, r], axis=2), np.stack([p, r, s], axis=2)], axis=2)
-        return cells.reshape(-1, 3, 3)
-
-    def in_cells(self, points) -> np.ndarray:
-        """(n, 2) float: places of points ``(n, 3)`` of its plane, in cells along either axis."""
-        axes = np.stack([self.along_rows, self.along_columns])
-        return np.linalg.solve(axes @ axes.T, axes @ (points - self.corner).T).T
-
-    def place(self, cells) -> np.ndarray:
-        """(3,) float: the point at a place in cells."""
-        return self.corner + cells[0] * self.along_rows + cells[1] * self.along_columns
+_MOST_TESTS = 2_000_000
+"""Runs times outlines that are looked at for what is near."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,7 +221,14 @@ class Fracture:
 
 
 def fracture(
-    planes: Planes, cut, reflects, two_sided, max_area: float | None, times: float = 1.0, wanted=True
+    planes: Planes,
+    cut,
+    reflects,
+    two_sided,
+    max_area: float | None,
+    times: float = 1.0,
+    wanted=True,
+    luminous=None,
 ) -> Fracture:
     """Cut the scene's planes into faces and elements.
 
@@ -288,6 +246,8 @@ def fracture(
         How many times as many faces and elements as usual, where the number is chosen here.
     wanted : (surfaces,) bool, or True for all
         Surfaces whose faces are reported; others' are not cut. Faces are of the size that they would have with all.
+    luminous : (surfaces,) bool, optional
+        Surfaces that give light of their own.
 
     Returns
     -------
@@ -313,8 +273,10 @@ def fracture(
     fine = (
         np.where(np.asarray(reflects), reflecting / FEWEST_ELEMENTS, surface_area / ELEMENTS_PER_PLAIN_SURFACE) / times
     )
-    parts = _elements(faces, fine[face_surface])
     sheet = planes.given_sheet[faces.parent]
+    glows = np.zeros(len(planes.surfaces), bool) if luminous is None else np.asarray(luminous)
+    wide = _wide_at_most(faces.grids, planes, sheet, np.asarray(two_sided), glows)
+    parts = _elements(faces, fine[face_surface], wide / math.sqrt(times))
     back_of = np.flatnonzero(np.asarray(two_sided)[face_surface])
     place = np.full(len(faces.parent), -1)
     place[back_of] = len(faces.parent) + np.arange(len(back_of))
@@ -342,30 +304,58 @@ def fracture(
     )
 
 
-def _elements(faces: Triangles, limits: np.ndarray) -> Triangles:
-    """Cut faces into elements no larger than limits ``(faces,)``: runs of cells into finer runs, others by halving."""
+def _wide_at_most(grids, planes: Planes, sheet, two_sided, luminous) -> np.ndarray:
+    """(runs, 2) float: how wide cells may be along either axis for what is near [m], of the largest runs at least."""
+    wide = np.full((len(grids), 2), np.inf)
+    glows = luminous[planes.sheet_surface[planes.outline_sheet]]
+    area = np.array([grid.sides.prod() * grid.rows * grid.columns for grid in grids])
+    for k in np.argsort(-area, kind="stable")[: max(1, _MOST_TESTS // len(planes.outlines))]:
+        mine = sheet[grids[k].first]
+        for side in (1.0, -1.0) if two_sided[planes.sheet_surface[mine]] else (1.0,):
+            wide[k] = np.minimum(wide[k], closeness(grids[k], planes, side * planes.sheet_normal[mine], glows))
+    return wide
+
+
+def _divisions(grids, areas, limits, wide) -> tuple[np.ndarray, np.ndarray]:
+    """(runs,) int and (runs, 2) int: what cells' sides are divided by, and what either side alone would be."""
+    sides = np.array([grid.sides for grid in grids]).reshape(-1, 2)
+    first = np.array([grid.first for grid in grids], np.int64)
+    # both axes are divided alike, as the faces' diagonal has to stay one: long cells need more
+    slender = np.minimum(sides.max(axis=1) / sides.min(axis=1), _MOST_SLENDER)
+    plain = np.maximum(1, np.ceil(np.sqrt(slender * areas[first] / limits[first]) - 1e-9)).astype(int)
+    cells = np.array([2 * grid.rows * grid.columns for grid in grids])
+    while True:
+        alone = np.maximum(plain[:, None], np.rint(sides / wide).astype(int))
+        times = alone.max(axis=1)
+        if (cells * (times**2 - plain**2)).sum() <= MOST_FINER:
+            return times, alone
+        wide = 1.25 * wide
+
+
+def _elements(faces: Triangles, limits: np.ndarray, wide: np.ndarray) -> Triangles:
+    """Cut faces into elements no larger than limits ``(faces,)``: runs of cells into finer runs, others by halving.
+
+    Runs get cells no wider than ``wide`` (runs, 2) [m] as well, so far as `MOST_FINER` allows.
+    """
     areas = faces.areas
     alone = np.ones(len(areas), bool)
     found, parents, grids, count = [], [], [], 0
-    for grid in faces.grids:
+    for grid, times, enough in zip(faces.grids, *_divisions(faces.grids, areas, limits, wide), strict=True):
         cells = np.arange(grid.first, grid.first + 2 * grid.rows * grid.columns)
-        sides = np.linalg.norm([grid.along_rows, grid.along_columns], axis=1)
-        # both axes are divided alike, as the faces' diagonal has to stay one: long cells need more
-        slender = min(float(sides.max() / sides.min()), _MOST_SLENDER)
-        times = max(1, math.ceil(math.sqrt(slender * areas[grid.first] / limits[grid.first]) - 1e-9))
         if grid.rows * grid.columns * times**2 < _FEWEST_CELLS:
             continue  # too few cells to tell how light changes
         alone[cells] = False
         finer = Grid(
             count,
-            grid.rows * times,
-            grid.columns * times,
+            grid.rows * int(times),
+            grid.columns * int(times),
             grid.corner,
             grid.along_rows / times,
             grid.along_columns / times,
+            tuple((times // enough).tolist()),
         )
         found.append(finer.triangles)
-        parents.append(grid.first + _halves_of(finer, times).ravel())
+        parents.append(grid.first + _halves_of(finer, int(times)).ravel())
         grids.append(finer)
         count += len(parents[-1])
     single = np.flatnonzero(alone)

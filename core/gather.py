@@ -95,7 +95,7 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
     Gathered
     """
     rows = len(points)
-    patches = np.zeros((rows, targets.patches.count))
+    patches = np.zeros((rows, targets.patches.columns))
     direct = np.zeros((rows, targets.columns), np.float32)
     deep = specular = None
     unlit = np.zeros(rows)
@@ -117,8 +117,8 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
     if deep is not None:
         patches += deep
     return Gathered(
-        patches=patches.astype(np.float32),
-        deep=None if deep is None else deep.astype(np.float32),
+        patches=targets.patches.folded(patches).astype(np.float32),
+        deep=None if deep is None else targets.patches.folded(deep).astype(np.float32),
         sky_direct=direct,
         sky_specular=specular,
         unlit=unlit.astype(np.float32),
@@ -130,7 +130,7 @@ def _add_patches(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarr
     _add_whole_beams(s, targets, out, unlit)
     row, patch, weight = _parts_of_beams(s, parts, targets, unlit)
     if len(row):
-        flat = s.rows[row] * targets.patches.count + patch
+        flat = s.rows[row] * out.shape[1] + patch
         out += np.bincount(flat, weights=weight, minlength=out.size).reshape(out.shape)
 
 

@@ -126,7 +126,7 @@ def make_geometry(
     cut = reflects | (emits & (max_area is not None))
     two_sided = np.array([s.two_sided for s in surfaces])
     wanted = np.array([receivers is None or s.name in receivers for s in surfaces])
-    cuts = fracture(planes, cut, reflects, two_sided, max_area, times, wanted)
+    cuts = fracture(planes, cut, reflects, two_sided, max_area, times, wanted, emits)
     points = cuts.elements.mean(axis=1)
     fronts = len(planes.sheet_surface)
     surface = planes.sheet_surface[cuts.element_sheet % fronts]

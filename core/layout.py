@@ -11,14 +11,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .fracture import Grid
+from .grid import ON_LINE, Grid
+from .nearness import near_edges
 from .planes import Planes
 
 _MOST_CONTACTS = 200
 """Lines of contact in one plane beyond which they are left to be found by doubt."""
 
 _MOST_BREAKS = 12
-_ON_LINE = 1e-6
+_CLOSE = 4.0
+"""Height of an edge above a plane, in cells, up to which the light below changes over few of them."""
+
+_APART = 4
+"""Cells at least between the places below two such edges that end stretches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,27 +48,45 @@ class Layout:
 
     @classmethod
     def of(cls, grid: Grid, sheet: int, planes: Planes) -> Layout:
-        """Layout that suits a run and what touches it."""
+        """Layout that suits a run, what touches it and what passes close over it."""
         touched = _touched(grid, sheet, planes)
-        contacts = touched[~_along_border(touched, (grid.rows, grid.columns))]
-        cut = np.zeros((grid.rows, grid.columns), bool)
+        contacts = touched[~grid.along_border(touched)]
+        cut = np.zeros(grid.shape, bool)
         for line in contacts:
             cut[_crossed_cells(line, cut.shape)] = True
-        stretches = _stretches(grid.rows, touched[:, :, 0]), _stretches(grid.columns, touched[:, :, 1])
-        return cls(grid, contacts, cut, stretches)
+        passed = _passed(grid, sheet, planes)
+        rows, columns = (
+            _stretches(grid.shape[axis], touched[:, :, axis], passed[axis], grid.spacing[axis]) for axis in (0, 1)
+        )
+        return cls(grid, contacts, cut, (rows, columns))
 
 
-def _stretches(count: int, places: np.ndarray) -> list:
-    """Stretches of cells between the places ``(c, 2)`` of contacts."""
-    inside = np.unique(np.round(places[(places > _ON_LINE) & (places < count - _ON_LINE)], 6))
+def _stretches(count: int, contacts: np.ndarray, passed: np.ndarray, spacing: int) -> list:
+    """Stretches of cells between the places ``(c, 2)`` of contacts, and between cells below what passes over."""
+    inside = np.unique(np.round(contacts[(contacts > ON_LINE) & (contacts < count - ON_LINE)], 6))
     if len(inside) > _MOST_BREAKS:
         inside = inside[:0]
-    low = np.floor(inside + _ON_LINE).astype(int)
-    cut = low[np.abs(inside - np.rint(inside)) > _ON_LINE]  # in the middle of a cell
-    borders = np.unique(
-        np.concatenate([[0, count], np.rint(inside).astype(int)[np.isin(low, cut, invert=True)], cut, cut + 1])
-    )
+    low = np.floor(inside + ON_LINE).astype(int)
+    cut = low[np.abs(inside - np.rint(inside)) > ON_LINE]  # in the middle of a cell
+    whole = np.rint(inside).astype(int)[np.isin(low, cut, invert=True)]
+    borders = np.unique(np.concatenate([[0, count], whole, cut, cut + 1]))
+    for place in (spacing * np.unique(np.rint(passed / spacing).astype(int))).tolist():
+        if len(borders) <= _MOST_BREAKS + 1 and np.abs(borders - place).min() >= _APART * spacing:
+            borders = np.union1d(borders, place)
     return [(a, b - a) for a, b in itertools.pairwise(borders.tolist())]
+
+
+def _passed(grid: Grid, sheet: int, planes: Planes) -> tuple[np.ndarray, np.ndarray]:
+    """Places along either axis, in cells, below edges that pass so closely that light changes over few of them."""
+    fronts = len(planes.sheet_surface)
+    normal = planes.sheet_normal[sheet % fronts] * (1.0 if sheet < fronts else -1.0)
+    sides = grid.sides * grid.spacing
+    edges = near_edges(grid, planes, normal, _CLOSE * float(sides.max()))
+    step = np.abs(edges.lines[:, 1] - edges.lines[:, 0])
+    rows, columns = (
+        edges.lines[(step[:, axis] < ON_LINE) & (edges.heights <= _CLOSE * sides[axis]), 0, axis] for axis in (0, 1)
+    )
+    return rows, columns
 
 
 def _touched(grid: Grid, sheet: int, planes: Planes) -> np.ndarray:
@@ -85,36 +108,14 @@ def _touched(grid: Grid, sheet: int, planes: Planes) -> np.ndarray:
         )
         ends = grid.in_cells(points)
         far = np.unravel_index(np.argmax(np.linalg.norm(ends[:, None] - ends, axis=2)), (len(ends),) * 2)
-        found.append(_within(ends[list(far)], (grid.rows, grid.columns)))
-    lines = [line for line in found if line is not None]
-    return np.array(lines) if 0 < len(lines) <= _MOST_CONTACTS else np.zeros((0, 2, 2))
-
-
-def _within(line: np.ndarray, shape) -> np.ndarray | None:
-    """Part of a line inside a run or along its border; None where that is a point."""
-    low, high = 0.0, 1.0
-    step = line[1] - line[0]
-    if np.abs(step).max() < _ON_LINE:
-        return None
-    for axis in (0, 1):
-        if abs(step[axis]) < _ON_LINE:
-            if not -_ON_LINE < line[0, axis] < shape[axis] + _ON_LINE:
-                return None
-            continue
-        ends = np.sort((np.array([0.0, shape[axis]]) - line[0, axis]) / step[axis])
-        low, high = max(low, ends[0]), min(high, ends[1])
-    return line[0] + np.outer([low, high], step) if high - low > _ON_LINE else None
-
-
-def _along_border(lines: np.ndarray, shape) -> np.ndarray:
-    """(c,) bool: lines that run along a run's border."""
-    low, high = np.abs(lines) < _ON_LINE, np.abs(lines - np.array(shape)) < _ON_LINE
-    return (low.all(axis=1) | high.all(axis=1)).any(axis=1)
+        found.append(ends[list(far)])
+    lines, _ = grid.within(np.array(found).reshape(-1, 2, 2))
+    return lines if len(lines) <= _MOST_CONTACTS else lines[:0]
 
 
 def _crossed_cells(line: np.ndarray, shape) -> tuple[np.ndarray, np.ndarray]:
     samples = max(2, int(8 * np.abs(line[1] - line[0]).max()) + 1)
     places = line[0] + np.linspace(0.0, 1.0, samples)[:, None] * (line[1] - line[0])
-    inside = (np.abs(places - np.rint(places)) > _ON_LINE).all(axis=1)
+    inside = (np.abs(places - np.rint(places)) > ON_LINE).all(axis=1)
     cells = np.clip(np.floor(places[inside]).astype(int), 0, np.array(shape) - 1)
     return cells[:, 0], cells[:, 1]

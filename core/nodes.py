@@ -32,6 +32,9 @@ _SPACES = 8
 _BESIDE = 0.12
 """Distance from the end of a stretch to its first line of nodes, in cells: light changes fast beside other planes."""
 
+_FEWEST_OWN = 1_000
+"""Elements in doubt that may always have receivers of their own; no more than the lattice has where that is more."""
+
 _MOST_SPLITS = 3
 _FEWEST_SPLITS = 100
 
@@ -81,6 +84,12 @@ class Weights:
     def gathered(self, values: np.ndarray, nodes: int) -> np.ndarray:
         """(m,) float: the other way round, sums at the nodes of elements' values ``(e,)``."""
         return np.bincount(self.node, weights=self.weight * values[self.rows], minlength=nodes)
+
+    def of_rows(self, rows: np.ndarray) -> Weights:
+        """Those of some elements ``(k,)``, in their order."""
+        count = np.diff(self.start)[rows]
+        entry = np.repeat(self.start[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
+        return Weights(np.concatenate([[0], np.cumsum(count)]), self.node[entry], self.weight[entry])
 
     def replaced(self, element, node, weight) -> Weights:
         """With other entries for some elements."""
@@ -180,14 +189,29 @@ class Nodes:
         slope = _slopes(self.weights.apply(values), fracture) / np.maximum(receivers, 1)
         return self.doubt(values) + np.where((receivers > 0) & (receivers <= 4), _CURVE * slope, 0.0)
 
-    def with_own(self, elements: np.ndarray, points: np.ndarray) -> Nodes:
-        """With receivers of their own ``points`` (k, 3) for some elements ``(k,)``."""
-        node = len(self.points) + np.arange(len(elements))
+    def with_own(self, elements: np.ndarray, fracture: Fracture) -> Nodes:
+        """With receivers of their own for some elements ``(k,)``.
+
+        Elements of cells that are looked at as one share one, which raises or lowers what the lattice tells of them.
+        """
+        block, middle = _blocks(fracture)
+        together = block[elements] >= 0
+        alone, some = elements[~together], elements[together]
+        blocks, place = np.unique(block[some], return_inverse=True)
+        every = np.concatenate([alone, some])
+        node = len(self.points) + np.concatenate([np.arange(len(alone)), len(alone) + place.reshape(-1)])
+        own = every, node, np.ones(len(every))
+        entries = [own]
+        for like, share in ((some, 1.0), *((middle[block[some], half], -0.5) for half in (0, 1))):
+            told = self.weights.of_rows(like)
+            entries.append((some[told.rows], told.node, share * told.weight))
         return self._with(
-            elements,
-            points,
-            self.weights.replaced(elements, node, np.ones(len(node))),
-            self.around.replaced(elements, node, np.ones(len(node))),
+            np.concatenate([alone, middle[blocks, 0]]),
+            np.concatenate(
+                [fracture.elements[alone].mean(axis=1), fracture.elements[middle[blocks]].mean(axis=(1, 2))]
+            ),
+            self.weights.replaced(*(np.concatenate(part) for part in zip(*entries, strict=True))),
+            self.around.replaced(*own),
         )
 
     def with_split(self, pieces: _Pieces) -> tuple[Nodes, _Pieces]:
@@ -235,10 +259,12 @@ def settled(
     Nodes
     """
     nodes, values = lattice, evaluate(lattice, 0)
-    doubtful = np.flatnonzero(nodes.doubt(values) > DOUBT / times)
+    doubt = nodes.doubt(values)
+    doubtful = np.flatnonzero(doubt > DOUBT / times)
+    doubtful = _foremost(doubtful, doubt[doubtful], max(_FEWEST_OWN, len(lattice.points)))
     if len(doubtful):
         first = len(nodes.points)
-        nodes = nodes.with_own(doubtful, fracture.elements[doubtful].mean(axis=1))
+        nodes = nodes.with_own(doubtful, fracture)
         values = evaluate(nodes, first)
     pieces = _Pieces.steep(nodes, values, fracture, STEEP / times)
     for _ in range(_MOST_SPLITS):
@@ -273,7 +299,10 @@ class _Pieces:
     def steep(cls, nodes: Nodes, values: np.ndarray, fracture: Fracture, steep: float) -> _Pieces:
         """Elements with one receiver of their own that the other half of their cell differs much from."""
         slope = _slopes(nodes.weights.apply(values), fracture)
-        element = np.flatnonzero((slope > steep) & (np.diff(nodes.weights.start) == 1))
+        single = np.flatnonzero(np.diff(nodes.weights.start) == 1)
+        node = nodes.weights.node[nodes.weights.start[single]]
+        own = single[np.bincount(nodes.weights.node, minlength=len(nodes.points))[node] == 1]
+        element = own[slope[own] > steep]
         element = _foremost(element, slope[element], _most_pieces(nodes))
         node = nodes.weights.node[nodes.weights.start[element]]
         return cls(fracture.elements[element], element, node, np.ones(len(element)))
@@ -316,6 +345,26 @@ def _slopes(here: np.ndarray, fracture: Fracture) -> np.ndarray:
         pair = here[grid.elements].reshape(-1, 2, here.shape[1])
         slopes[grid.elements] = np.repeat(np.abs(pair[:, 0] - pair[:, 1]).max(axis=1, initial=0.0), 2)
     return slopes / _all_light(here)
+
+
+def _blocks(fracture: Fracture) -> tuple[np.ndarray, np.ndarray]:
+    """Cells that are looked at as one: a number for elements of such ``(e,)``, -1 for others; their middle elements.
+
+    The latter are the halves of the cell in the middle of each, ``(blocks, 2)``.
+    """
+    block, middle, count = np.full(len(fracture.elements), -1), [np.zeros((0, 2), np.int64)], 0
+    for grid in fracture.grids:
+        across, along = grid.spacing
+        if across * along == 1:
+            continue
+        row, column, _ = np.indices((grid.rows, grid.columns, 2)).reshape(3, -1)
+        wide = grid.columns // along
+        block[grid.elements] = count + row // across * wide + column // along
+        row, column = np.indices((grid.rows // across, wide)).reshape(2, -1)
+        cell = (row * across + across // 2) * grid.columns + column * along + along // 2
+        middle.append(grid.first + 2 * cell[:, None] + [0, 1])
+        count += len(cell)
+    return block, np.concatenate(middle)
 
 
 def _most_pieces(nodes: Nodes) -> int:
@@ -372,7 +421,10 @@ def _joined(entries: list, count: int) -> Weights:
 def _enter(lattice: Layout, entries: _Entries) -> None:
     """Add the lattice's nodes, and the weights of all elements that are not cut."""
     grid = lattice.grid
-    stretches = [[(a, n, a + _lines(n)) for a, n in along] for along in lattice.stretches]
+    stretches = [
+        [(a, n, a + _lines(n, spacing)) for a, n in along]
+        for along, spacing in zip(lattice.stretches, grid.spacing, strict=True)
+    ]
     lines = [np.concatenate([part[2] for part in along]) for along in stretches]
     rows, columns = np.meshgrid(*lines, indexing="ij")
     cell = (np.floor(rows).astype(int) * grid.columns + np.floor(columns).astype(int)).ravel()
@@ -423,8 +475,13 @@ def _left_out(lines: np.ndarray):
         yield k, others, np.array(weights)
 
 
-def _lines(count: int) -> np.ndarray:
-    """Places of the lines of nodes along a stretch, in cells: close at its ends, wider and wider towards its middle."""
+def _lines(count: int, spacing: int = 1) -> np.ndarray:
+    """Places of the lines of nodes along a stretch, in cells: close at its ends, wider and wider towards its middle.
+
+    ``spacing`` cells are looked at as one where they fill the stretch.
+    """
+    if spacing > 1 and count % spacing == 0:
+        return spacing * _lines(count // spacing)
     if count == 1:
         return np.array([_BESIDE, 1 - _BESIDE])
     most = max(3, count // _SPACES)

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .layout import Layout
 from .planes import Planes
+from .profiles import Profile, profile_shares
 
 _WIDEST = 1.0
 """Side of the widest patch of a run, over that of a patch of average area."""
 
 _GROWTH = 0.4
 """Growth of patches with the distance from the end of a stretch."""
+
+_PARTS = 20
+"""Columns across a narrow strip, about: an odd number, as whole slats far away are seen at their middle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +38,9 @@ class Patches:
     grid_base : (2s,) int
         Where the sheet's cells begin in ``grid``; -1 for a sheet without patches.
     grid : (cells,) int
+        Column of each cell: its patch, or a part of one across a narrow strip.
+    profiles : tuple of Profile
+        What the columns after the patches are parts of.
     """
 
     count: int
@@ -43,6 +50,19 @@ class Patches:
     grid_shape: np.ndarray
     grid_base: np.ndarray
     grid: np.ndarray
+    profiles: tuple[Profile, ...] = ()
+
+    @property
+    def columns(self) -> int:
+        """What beams can end on: patches, and parts of them across narrow strips."""
+        return self.count + sum(p.along * len(p.shares) for p in self.profiles)
+
+    def folded(self, columns: np.ndarray) -> np.ndarray:
+        """(r, p) float: form factors to patches from those to columns ``(r, c)``."""
+        patches = columns[:, : self.count]
+        for profile in self.profiles:
+            profile.fold(columns, patches)
+        return patches
 
 
 def make_patches(
@@ -84,7 +104,8 @@ def make_patches(
     sheet_area = np.add.reduceat(areas[order], starts)
     bounds = np.append(starts, len(order))
     runs = {int(element_sheet[lattice.grid.first]): lattice for lattice in lattices}
-    grid, cells, count = [], 0, 0
+    grid, cells, count, parts = [], 0, 0, 0
+    profiles: list[Profile] = []
     small = []
     for k, sheet in enumerate(used):
         members = order[bounds[k] : bounds[k + 1]]
@@ -100,11 +121,17 @@ def make_patches(
         if sheet in runs and len(members) == 2 * runs[sheet].cut.size:
             graded = _graded(runs[sheet], planes.sheet_axes[sheet % fronts], low, extent, patch_area)
             if graded is not None:
-                patch, table = graded
+                patch, table, shares = graded
                 shape[sheet], base[sheet] = table.shape, cells
                 origin[sheet], scale[sheet] = low, shape[sheet] / extent
                 of_element[runs[sheet].grid.elements] = count + np.repeat(patch.ravel(), 2)
-                grid.append(count + table.ravel())
+                if shares is None:
+                    grid.append(count + table.ravel())
+                else:
+                    grid.append(-1 - parts - table.ravel())  # until the number of all patches is known
+                    along = (int(patch.max()) + 1) // shares.shape[1]
+                    profiles.append(Profile(parts, count, along, shares))
+                    parts += along * len(shares)
                 cells, count = cells + table.size, count + int(patch.max()) + 1
                 continue
         corners = (elements[members] @ planes.sheet_axes[sheet % fronts].T - low) / extent
@@ -133,33 +160,63 @@ def make_patches(
             base[sheet] = cells
             grid.append(of_element[order[bounds[k] : bounds[k] + 1]])
             cells += 1
-    return Patches(count, of_element, origin, scale, shape, base, np.concatenate(grid))
+    column = np.concatenate(grid)
+    column = np.where(column < 0, count - 1 - column, column)
+    after = tuple(replace(p, first_column=count + p.first_column) for p in profiles)
+    return Patches(count, of_element, origin, scale, shape, base, column, after)
 
 
-def _graded(lattice: Layout, axes, low, extent, patch_area: float) -> tuple[np.ndarray, np.ndarray] | None:
-    """Patches of a run's cells ``(rows, columns)``, and the same along the sheet's axes; None where those lie askew."""
+def _graded(
+    lattice: Layout, axes, low, extent, patch_area: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None] | None:
+    """Patches of a run's cells ``(rows, columns)``, and the same along the sheet's axes; None where those lie askew.
+
+    Across a strip narrower than a patch the latter are numbers of parts, and third is what these are of patches.
+    """
     grid = lattice.grid
     along = np.abs(axes @ np.stack([grid.along_rows, grid.along_columns], axis=1))
     if np.minimum(along[0], along[1]).max() > 1e-6 * along.max():
         return None
+    side = math.sqrt(patch_area)
     groups = [
-        _groups(stretches, max(1, round(_WIDEST * math.sqrt(patch_area) / float(np.linalg.norm(step)))))
-        for stretches, step in zip(lattice.stretches, (grid.along_rows, grid.along_columns), strict=True)
+        _groups(stretches, max(1, round(_WIDEST * side / float(cell))), spacing)
+        for stretches, cell, spacing in zip(lattice.stretches, grid.sides, grid.spacing, strict=True)
     ]
-    patch = groups[0][:, None] * (int(groups[1].max()) + 1) + groups[1][None, :]
-    rows, columns = np.indices(patch.shape)
-    centre = grid.corner + (rows[:, :, None] + 0.5) * grid.along_rows + (columns[:, :, None] + 0.5) * grid.along_columns
-    shape = np.array(patch.shape if along[0, 0] > along[1, 0] else patch.shape[::-1])
+    counts = [int(group.max()) + 1 for group in groups]
+    widths = grid.sides * grid.shape
+    axis = int(np.argmin(widths))
+    patch, finer, shares = groups[0][:, None] * counts[1] + groups[1], [1, 1], None
+    numbers = patch
+    if widths[axis] < side and counts[axis] > 1:
+        finer[axis] = max(1, _PARTS // (2 * grid.shape[axis])) * 2 + 1
+        shares = profile_shares(groups[axis], lattice.stretches[axis], finer[axis])
+        numbers = groups[1 - axis][:, None] * len(shares) + np.arange(len(shares))
+        patch = groups[1 - axis][:, None] * counts[axis] + groups[axis]
+        numbers, patch = (numbers, patch) if axis == 1 else (numbers.T, patch.T)
+    rows, columns = np.indices(numbers.shape)
+    centre = (
+        grid.corner
+        + ((rows[:, :, None] + 0.5) / finer[0]) * grid.along_rows
+        + ((columns[:, :, None] + 0.5) / finer[1]) * grid.along_columns
+    )
+    shape = np.array(numbers.shape if along[0, 0] > along[1, 0] else numbers.shape[::-1])
     place = np.clip(((centre @ axes.T - low) * (shape / extent)).astype(int), 0, shape - 1)
     table = np.zeros(shape, np.int64)
-    table[place[:, :, 0], place[:, :, 1]] = patch
-    return patch, table
+    table[place[:, :, 0], place[:, :, 1]] = numbers
+    return patch, table, shares
 
 
-def _groups(stretches: list, most: int) -> np.ndarray:
-    """(cells,) int: group of each cell along one axis: narrow at the ends of stretches, ``most`` cells in between."""
+def _groups(stretches: list, most: int, spacing: int = 1) -> np.ndarray:
+    """(cells,) int: group of each cell along one axis: narrow at the ends of stretches, ``most`` cells in between.
+
+    ``spacing`` cells count as one where they fill a stretch.
+    """
     sizes = []
     for _, count in stretches:
+        if spacing > 1 and count % spacing == 0:
+            groups = _groups([(0, count // spacing)], max(1, round(most / spacing)))
+            sizes += (spacing * np.bincount(groups)).tolist()
+            continue
         half: list[int] = []
         left = count
         while left > 0:

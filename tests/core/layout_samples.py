@@ -47,6 +47,7 @@ def geometry_of(scene, max_area=AREA, patches=100, elements=8):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fracture, "FEWEST_ELEMENTS", elements)
         patch.setattr(fracture, "ELEMENTS_PER_PLAIN_SURFACE", 0.1)
+        patch.setattr(fracture, "MOST_FINER", 0)
         patch.setattr(geometry, "PATCHES", patches)
         return make_geometry(scene, find_planes(scene), Globe(4), max_area)
 

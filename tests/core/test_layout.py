@@ -28,17 +28,20 @@ def test_a_wall_that_nothing_touches_is_one_stretch():
 
 
 @pytest.mark.parametrize(
-    ("depth", "touches"),
+    ("depth", "ends", "touches"),
     [
-        ((0.0, 0.5), True),
-        ((-0.5, 0.0), True),  # from behind: its shadow does not end here, and it does no harm
-        ((-0.3, 0.3), True),  # through the wall
-        ((1e-3, 0.5), False),
+        ((0.0, 0.5), True, True),
+        ((-0.5, 0.0), True, True),  # from behind: its shadow does not end here, and it does no harm
+        ((-0.3, 0.3), True, True),  # through the wall
+        ((1e-3, 0.5), True, False),  # light changes there as fast
+        ((0.3, 0.5), True, False),
+        ((0.45, 0.9), False, False),
+        ((-0.5, -1e-3), False, False),
     ],
 )
-def test_stretches_end_where_something_touches_or_crosses(depth, touches):
+def test_stretches_end_where_something_touches_or_crosses_or_passes_close(depth, ends, touches):
     layout = layout_of(shelf(0.4, y=depth))
-    assert layout.stretches == (([(0, 4), (4, 6)] if touches else [(0, 10)]), [(0, 20)])
+    assert layout.stretches == (([(0, 4), (4, 6)] if ends else [(0, 10)]), [(0, 20)])
     assert not layout.cut.any(), "the line runs between cells"
     if touches:
         np.testing.assert_allclose(np.sort(layout.contacts[0], axis=0), [[4, 0], [4, 20]], atol=1e-9)

@@ -311,7 +311,7 @@ def test_own_receivers_replace_what_was_interpolated():
     geometry = geometry_of(wall())
     nodes = nodes_of(geometry)
     some = np.array([40, 41, 300])
-    more = nodes.with_own(some, geometry.element_points[some])
+    more = nodes.with_own(some, geometry.fracture)
     light = np.concatenate([np.ones(len(nodes.points)), [2, 4, 10]])
     got = more.weights.apply(light)
     np.testing.assert_allclose(got[some], [2, 4, 10])
