@@ -273,9 +273,11 @@ def _set_hidden(scene: bpy.types.Scene, object_: bpy.types.Object, hidden: bool)
 
 
 def settle_viewports(scene: bpy.types.Scene) -> None:
-    """Give the viewports their shading back where a scene has no results (any more), as after an undo."""
+    """Shade the viewports after an undo or a redo, which leave them as they are, by whether a scene has results now."""
     if not has_results(scene):
         _restore_viewports(scene)
+    elif not any(len(screen.luzespecular.shadings) for screen, _, _ in _viewports(scene)):
+        _shade_viewports(scene)
 
 
 def _viewports(scene: bpy.types.Scene):

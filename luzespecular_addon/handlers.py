@@ -32,8 +32,6 @@ def _scene_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> No
 @persistent
 def _stepped_back(scene: bpy.types.Scene, *_unused: object) -> None:
     display.settle_viewports(scene)
-    if display.has_results(scene):
-        display.apply_view(scene)  # a redo brings results back, but no shading
     live.request(scene)
 
 

@@ -318,6 +318,33 @@ def test_clear_restores_the_viewport(addon, bpy, make, solve):
     assert (shadings[0].light, shadings[0].color_type) == ("MATCAP", "RANDOM")
 
 
+def test_viewports_follow_undo_and_redo(addon, bpy, make, solve):
+    shadings = [
+        area.spaces.active.shading
+        for window in bpy.context.window_manager.windows
+        for area in window.screen.areas
+        if area.type == "VIEW_3D"
+    ]
+    if not shadings:
+        pytest.skip("no viewport in this Blender")
+    scene, shading = bpy.context.scene, shadings[0]
+    shading.light, shading.color_type = "MATCAP", "RANDOM"
+    floor = make.square("Floor")
+    make.quick()
+    solve()
+    shading.type = "MATERIAL"  # as the user likes it
+    addon.display.settle_viewports(scene)  # some other step undone
+    assert shading.type == "MATERIAL"
+    kept = addon.session.current.result_of(scene.name, scene.luzespecular.results.run)
+    addon.results_object.remove(scene)  # the run undone: undo takes all but the viewport's shading back
+    addon.writeback.clear(floor.data)
+    addon.display.settle_viewports(scene)
+    assert (shading.type, shading.light, shading.color_type) == ("SOLID", "MATCAP", "RANDOM")
+    addon.display.write(scene, *kept)  # and redone
+    addon.display.settle_viewports(scene)
+    assert (shading.type, shading.light, shading.color_type) == ("SOLID", "FLAT", "VERTEX")
+
+
 def test_cancelling_leaves_nothing(addon, bpy, make, monkeypatch):
     make.square("Floor")
     make.quick()
