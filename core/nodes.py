@@ -130,6 +130,8 @@ class Nodes:
         Elements' values from the nodes'.
     around : Weights
         The nodes next to each element on the lattice; its own where it has such.
+    centres : Weights
+        The lattice's values in the middle of cells, some of which are looked at as one; by the first half of each.
     foretold : list of Weights
         What the nodes of the lattice would have if their neighbours along one axis, or the other, told it.
     """
@@ -139,6 +141,7 @@ class Nodes:
     element_sheet: np.ndarray
     weights: Weights
     around: Weights
+    centres: Weights
     foretold: list[Weights]
 
     @property
@@ -202,9 +205,10 @@ class Nodes:
         node = len(self.points) + np.concatenate([np.arange(len(alone)), len(alone) + place.reshape(-1)])
         own = every, node, np.ones(len(every))
         entries = [own]
-        for like, share in ((some, 1.0), *((middle[block[some], half], -0.5) for half in (0, 1))):
-            told = self.weights.of_rows(like)
-            entries.append((some[told.rows], told.node, share * told.weight))
+        # an element's mean follows the lattice, raised or lowered by what this errs by at the receiver itself
+        means, there = self.weights.of_rows(some), self.centres.of_rows(middle[block[some], 0])
+        entries.append((some[means.rows], means.node, means.weight))
+        entries.append((some[there.rows], there.node, -there.weight))
         return self._with(
             np.concatenate([alone, middle[blocks, 0]]),
             np.concatenate(
@@ -236,6 +240,7 @@ class Nodes:
             self.element_sheet,
             weights,
             around,
+            self.centres,
             self.foretold,
         )
 
@@ -261,7 +266,8 @@ def settled(
     nodes, values = lattice, evaluate(lattice, 0)
     doubt = nodes.doubt(values)
     doubtful = np.flatnonzero(doubt > DOUBT / times)
-    doubtful = _foremost(doubtful, doubt[doubtful], max(_FEWEST_OWN, len(lattice.points)))
+    cost = _own_share(fracture)[doubtful]
+    doubtful = _foremost(doubtful, doubt[doubtful], max(_FEWEST_OWN, len(lattice.points)), cost)
     if len(doubtful):
         first = len(nodes.points)
         nodes = nodes.with_own(doubtful, fracture)
@@ -372,9 +378,20 @@ def _most_pieces(nodes: Nodes) -> int:
     return max(_FEWEST_SPLITS, len(nodes.points) // 4)
 
 
-def _foremost(items: np.ndarray, by: np.ndarray, most: int) -> np.ndarray:
-    """The items that are largest ``by`` something, at most so many, in their order."""
-    return items if len(items) <= most else np.sort(items[np.argsort(-by, kind="stable")[:most]])
+def _own_share(fracture: Fracture) -> np.ndarray:
+    """(e,) float: share of a receiver that each element would have of its own; cells looked at as one share theirs."""
+    block, _ = _blocks(fracture)
+    together = block >= 0
+    share = np.ones(len(block))
+    share[together] = 1.0 / np.bincount(block[together])[block[together]]
+    return share
+
+
+def _foremost(items: np.ndarray, by: np.ndarray, most: int, cost: np.ndarray | None = None) -> np.ndarray:
+    """The items that are largest ``by`` something, at most so many, or of that cost together, in their order."""
+    order = np.argsort(-by, kind="stable")
+    spent = np.arange(1, len(items) + 1) if cost is None else np.cumsum(cost[order])
+    return np.sort(items[order[: int(np.searchsorted(spent, most + 1e-6, side="right"))]])
 
 
 class _Entries:
@@ -385,7 +402,7 @@ class _Entries:
         self.points: list[np.ndarray] = [np.zeros((0, 3))]
         self.elements: list[np.ndarray] = [np.zeros(0, np.int64)]
         none = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
-        self.weights, self.around = [none], [none]
+        self.weights, self.around, self.centres = [none], [none], [none]
         self.foretold = [none], [none]
 
     def add(self, points, element) -> np.ndarray:
@@ -405,12 +422,11 @@ class _Entries:
     def nodes(self, element_sheet) -> Nodes:
         """All that was entered."""
         count = len(element_sheet)
-        weights, around = (_joined(entries, count) for entries in (self.weights, self.around))
+        weights, around, centres = (_joined(entries, count) for entries in (self.weights, self.around, self.centres))
         on_lattices = 1 + max(int(entries[-1][0].max(initial=-1)) for entries in self.foretold)
         foretold = [_joined(entries, on_lattices) for entries in self.foretold]
-        return Nodes(
-            np.concatenate(self.points), np.concatenate(self.elements), element_sheet, weights, around, foretold
-        )
+        points, elements = np.concatenate(self.points), np.concatenate(self.elements)
+        return Nodes(points, elements, element_sheet, weights, around, centres, foretold)
 
 
 def _joined(entries: list, count: int) -> Weights:
@@ -432,19 +448,23 @@ def _enter(lattice: Layout, entries: _Entries) -> None:
     numbers = entries.add(points, grid.first + 2 * cell).reshape(rows.shape)
     _foretell(stretches, numbers, entries)
     whole = np.flatnonzero(~lattice.cut.ravel())
-    row, column = np.divmod(whole, grid.columns)
+
+    def enter(half: int, centre, places, shares, order: int, out: list) -> None:
+        row, column = np.divmod(whole, grid.columns)
+        line_a, weight_a = _stencils(stretches[0], np.arange(grid.rows), centre[0], places[:, 0], order)
+        line_b, weight_b = _stencils(stretches[1], np.arange(grid.columns), centre[1], places[:, 1], order)
+        node = numbers[line_a[row][:, :, None], line_b[column][:, None, :]]
+        weight = np.einsum("kna,knb,k->nab", weight_a[:, row], weight_b[:, column], shares)
+        element = np.broadcast_to((grid.first + 2 * whole + half)[:, None, None], node.shape)
+        out.append((element.ravel(), node.ravel(), weight.ravel()))
+
     for half, corners in enumerate(np.array(grid.corners, float)):
-        centre = np.mean(corners, axis=0, keepdims=True)
-        for order, places, shares, out in (
-            (4, polygons.RADON_PLACES @ corners, polygons.RADON_SHARES, entries.weights),
-            (2, centre, np.ones(1), entries.around),
-        ):
-            line_a, weight_a = _stencils(stretches[0], np.arange(grid.rows), centre[0, 0], places[:, 0], order)
-            line_b, weight_b = _stencils(stretches[1], np.arange(grid.columns), centre[0, 1], places[:, 1], order)
-            node = numbers[line_a[row][:, :, None], line_b[column][:, None, :]]
-            weight = np.einsum("kna,knb,k->nab", weight_a[:, row], weight_b[:, column], shares)
-            element = np.broadcast_to((grid.first + 2 * whole + half)[:, None, None], node.shape)
-            out.append((element.ravel(), node.ravel(), weight.ravel()))
+        centre = np.mean(corners, axis=0)
+        enter(half, centre, polygons.RADON_PLACES @ corners, polygons.RADON_SHARES, 4, entries.weights)
+        enter(half, centre, centre[None], np.ones(1), 2, entries.around)
+    if max(grid.spacing) > 1:
+        middle = np.array([0.5, 0.5])
+        enter(0, middle, middle[None], np.ones(1), 4, entries.centres)
 
 
 def _foretell(stretches, numbers: np.ndarray, entries: _Entries) -> None:

@@ -184,6 +184,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
         geometry.fracture.element_sheet,
         weights[0],
         weights[1],
+        lattice.centres,
         lattice.foretold,
     )
     specular_rows = array("specular_rows", np.int64, None, below=count)
