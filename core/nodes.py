@@ -199,6 +199,7 @@ class Nodes:
         """
         block, middle = _blocks(fracture)
         together = block[elements] >= 0
+        together[together] = np.diff(self.centres.start)[middle[block[elements[together]], 0]] > 0
         alone, some = elements[~together], elements[together]
         blocks, place = np.unique(block[some], return_inverse=True)
         every = np.concatenate([alone, some])
@@ -364,10 +365,11 @@ def _blocks(fracture: Fracture) -> tuple[np.ndarray, np.ndarray]:
         if across * along == 1:
             continue
         row, column, _ = np.indices((grid.rows, grid.columns, 2)).reshape(3, -1)
-        wide = grid.columns // along
+        high, wide = -(-grid.rows // across), -(-grid.columns // along)  # the last may be smaller
         block[grid.elements] = count + row // across * wide + column // along
-        row, column = np.indices((grid.rows // across, wide)).reshape(2, -1)
-        cell = (row * across + across // 2) * grid.columns + column * along + along // 2
+        row, column = np.indices((high, wide)).reshape(2, -1)
+        row = np.minimum(row * across + across // 2, grid.rows - 1)
+        cell = row * grid.columns + np.minimum(column * along + along // 2, grid.columns - 1)
         middle.append(grid.first + 2 * cell[:, None] + [0, 1])
         count += len(cell)
     return block, np.concatenate(middle)

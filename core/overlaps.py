@@ -222,7 +222,8 @@ class _Tally:
         beam = np.empty(groups, np.int64)
         beam[group] = self.cuts.beam
         cosines, frames = self.beams.hemisphere.cosines[self.beams.columns[beam]], self.beams.frames
-        total = np.where(self.settled, dots(self.whole, cosines), 1.0)
+        total = dots(self.whole, cosines)
+        total = np.where(self.settled & (total > 0), total, 1.0)
         share = dots(self.visible, cosines.take(group, axis=0)) / total[group]
         share = np.where(self.settled[group], np.maximum(share, 0.0), 0.0)
         covered = np.bincount(group, weights=share, minlength=groups)

@@ -1,5 +1,7 @@
 """Nodes: what elements get from the few receivers of a lattice, and where more of them are added."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 from layout_samples import BLACK, CELL, WHITE, geometry_of, shelf, wall, wall_and
 
 import luzespecular as luz
-from luzespecular.nodes import DOUBT, STEEP, Nodes, settled
+from luzespecular.nodes import DOUBT, STEEP, Nodes, _blocks, settled
 
 
 def nodes_of(geometry):
@@ -334,3 +336,29 @@ def test_a_scene_of_triangles_alone():
     nodes = nodes_of(geometry)
     assert len(nodes.points) == len(geometry.fracture.elements)
     assert (nodes.doubt(np.ones((len(nodes.points), 2))) == 0).all()
+
+
+@pytest.mark.parametrize("spacing", [(2, 3), (4, 1), (1, 7)])
+def test_cells_looked_at_as_one_need_not_fill_a_run(spacing):
+    """At the run's end fewer cells are left for one: each has its number, and its middle lies in it."""
+    fracture = geometry_of(wall()).fracture
+    grids = tuple(replace(grid, spacing=spacing) for grid in fracture.grids)
+    assert any(grid.shape[0] % spacing[0] or grid.shape[1] % spacing[1] for grid in grids)
+    block, middle = _blocks(replace(fracture, grids=grids))
+    mine = block >= 0
+    assert block.max() < len(middle) and set(block[mine]) == set(range(len(middle)))
+    np.testing.assert_array_equal(block[middle], np.arange(len(middle))[:, None] + [0, 0])
+
+
+def test_receivers_shared_by_cells_tell_of_the_point_where_they_stand():
+    """What they add to the lattice is nothing where this is right: a mean is not taken for a value at the middle."""
+    geometry = geometry_of(wall())
+    fracture = replace(
+        geometry.fracture, grids=tuple(replace(grid, spacing=(1, 2)) for grid in geometry.fracture.grids)
+    )
+    layouts = [replace(layout, grid=grid) for layout, grid in zip(geometry.lattices, fracture.grids, strict=True)]
+    nodes = Nodes.of(fracture, layouts)
+    more = nodes.with_own(np.flatnonzero(wall_of(geometry))[40:60], fracture)
+    assert len(more.points) > len(nodes.points)
+    curve = 1 + more.points[:, 0] ** 2 - 0.5 * more.points[:, 2] ** 3
+    np.testing.assert_allclose(more.weights.apply(curve), nodes.weights.apply(curve[: len(nodes.points)]), atol=1e-9)
