@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -207,6 +208,27 @@ class Fracture:
     element_sheet: np.ndarray
     element_areas: np.ndarray
     grids: tuple[Grid, ...]
+
+    @cached_property
+    def blocks(self) -> tuple[np.ndarray, np.ndarray]:
+        """Cells looked at as one: a number for elements of such ``(e,)``, -1 for others; and their middle elements.
+
+        The latter are the halves of the cell in the middle of each, ``(blocks, 2)``.
+        """
+        block, middle, count = np.full(len(self.elements), -1), [np.zeros((0, 2), np.int64)], 0
+        for grid in self.grids:
+            across, along = grid.spacing
+            if across * along == 1:
+                continue
+            row, column, _ = np.indices((grid.rows, grid.columns, 2)).reshape(3, -1)
+            high, wide = -(-grid.rows // across), -(-grid.columns // along)  # the last may be smaller
+            block[grid.elements] = count + row // across * wide + column // along
+            row, column = np.indices((high, wide)).reshape(2, -1)
+            row = np.minimum(row * across + across // 2, grid.rows - 1)
+            cell = row * grid.columns + np.minimum(column * along + along // 2, grid.columns - 1)
+            middle.append(grid.first + 2 * cell[:, None] + [0, 1])
+            count += len(cell)
+        return block, np.concatenate(middle)
 
     @property
     def sides(self) -> int:

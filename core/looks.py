@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import polygons
+from .arrays import dots
 from .flaws import ERROR, Finding, warning
 from .gaps import ways
 from .planes import Planes
@@ -100,7 +101,7 @@ def _met(planes: Planes, rays: RayScene, points, towards: np.ndarray, extent, to
     directions = towards.reshape(-1, 3)
     outline, distance = rays.nearest(points, directions)
     sheet = planes.outline_sheet[outline]
-    behind = np.einsum("nc,nc->n", directions, planes.sheet_normal[sheet]) > 0
+    behind = dots(directions, planes.sheet_normal[sheet]) > 0
     met = np.where(outline >= 0, sheet + behind * len(planes.sheet_normal), _NOTHING)
     met[(outline >= 0) & (distance < np.repeat(_HUNG_UP * extent, towards.shape[1]))] = _UNSURE
     if len(touching) > _MOST_COVERED:
@@ -286,7 +287,7 @@ def _chains(surfaces, planes: Planes, rays: RayScene, points: np.ndarray, toward
         outline, distance = rays.nearest(place, way)
         sheet = planes.outline_sheet[outline]
         normal = planes.sheet_normal[sheet]
-        slope = np.einsum("nc,nc->n", way, normal)
+        slope = dots(way, normal)
         on = (outline >= 0) & (slope < 0) & (weight * mirror[sheet] >= _CUTOFF)
         if not on.any():
             break

@@ -15,6 +15,7 @@ import numpy as np
 
 from . import polygons
 from .fracture import Fracture
+from .interpolation import lagrange
 from .layout import Layout
 
 _DENSE_SHARE = 0.7
@@ -197,7 +198,7 @@ class Nodes:
 
         Elements of cells that are looked at as one share one, which raises or lowers what the lattice tells of them.
         """
-        block, middle = _blocks(fracture)
+        block, middle = fracture.blocks
         together = block[elements] >= 0
         together[together] = np.diff(self.centres.start)[middle[block[elements[together]], 0]] > 0
         alone, some = elements[~together], elements[together]
@@ -354,27 +355,6 @@ def _slopes(here: np.ndarray, fracture: Fracture) -> np.ndarray:
     return slopes / _all_light(here)
 
 
-def _blocks(fracture: Fracture) -> tuple[np.ndarray, np.ndarray]:
-    """Cells that are looked at as one: a number for elements of such ``(e,)``, -1 for others; their middle elements.
-
-    The latter are the halves of the cell in the middle of each, ``(blocks, 2)``.
-    """
-    block, middle, count = np.full(len(fracture.elements), -1), [np.zeros((0, 2), np.int64)], 0
-    for grid in fracture.grids:
-        across, along = grid.spacing
-        if across * along == 1:
-            continue
-        row, column, _ = np.indices((grid.rows, grid.columns, 2)).reshape(3, -1)
-        high, wide = -(-grid.rows // across), -(-grid.columns // along)  # the last may be smaller
-        block[grid.elements] = count + row // across * wide + column // along
-        row, column = np.indices((high, wide)).reshape(2, -1)
-        row = np.minimum(row * across + across // 2, grid.rows - 1)
-        cell = row * grid.columns + np.minimum(column * along + along // 2, grid.columns - 1)
-        middle.append(grid.first + 2 * cell[:, None] + [0, 1])
-        count += len(cell)
-    return block, np.concatenate(middle)
-
-
 def _most_pieces(nodes: Nodes) -> int:
     """How many elements or pieces may be split at once: steep ones cost four times their number."""
     return max(_FEWEST_SPLITS, len(nodes.points) // 4)
@@ -382,7 +362,7 @@ def _most_pieces(nodes: Nodes) -> int:
 
 def _own_share(fracture: Fracture) -> np.ndarray:
     """(e,) float: share of a receiver that each element would have of its own; cells looked at as one share theirs."""
-    block, _ = _blocks(fracture)
+    block, _ = fracture.blocks
     together = block >= 0
     share = np.ones(len(block))
     share[together] = 1.0 / np.bincount(block[together])[block[together]]
@@ -492,9 +472,7 @@ def _left_out(lines: np.ndarray):
             continue
         start = min(max(k - 2, 0), len(lines) - 5)
         others = np.delete(np.arange(start, start + 5), k - start)
-        at = lines[others]
-        weights = [np.prod((lines[k] - np.delete(at, j)) / (at[j] - np.delete(at, j))) for j in range(len(others))]
-        yield k, others, np.array(weights)
+        yield k, others, lagrange(lines[others], lines[k])
 
 
 def _lines(count: int, spacing: int = 1) -> np.ndarray:
@@ -527,9 +505,7 @@ def _stencils(stretches: list, cells: np.ndarray, centre: float, places: np.ndar
         start = np.clip(np.searchsorted(lines, cells[mine] + centre) - used // 2, 0, len(lines) - used)
         index = start[:, None] + np.arange(used)
         at, place = lines[index], places[:, None] + cells[mine]
-        for k in range(used):
-            others = np.delete(np.arange(used), k)
-            weights[:, mine, k] = ((place[:, :, None] - at[:, others]) / (at[:, [k]] - at[:, others])).prod(axis=2)
+        weights[:, mine, :used] = lagrange(at, place)
         numbers[mine, :used] = first + index
         first += len(lines)
     return numbers, weights

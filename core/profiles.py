@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .interpolation import lagrange
+
 _ORDER = 3
 """Patches beside each other that a parabola goes through."""
 
@@ -71,12 +73,6 @@ def profile_shares(groups: np.ndarray, stretches: list, finer: int) -> np.ndarra
             at = borders[start : start + order + 1]
             # the sum up to each border is known: what interpolates it has the groups' means
             sums = np.tril(np.ones((order + 1, order)), -1) * np.diff(at)
-            low, high = (_lagrange(at, edges[k]) for k in (part, part + 1))
+            low, high = (lagrange(at, edges[k]) for k in (part, part + 1))
             shares[part, first + start : first + start + order] = finer * (high - low) @ sums
     return shares
-
-
-def _lagrange(at: np.ndarray, place: float) -> np.ndarray:
-    """(n,) float: weights of values at ``at`` for a place between."""
-    others = [np.delete(at, k) for k in range(len(at))]
-    return np.array([np.prod((place - other) / (x - other)) for x, other in zip(at, others, strict=True)])

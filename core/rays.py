@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
+from .arrays import dots
 
 _FEW = 48
 _LEAF = 4
@@ -226,8 +227,8 @@ class RayScene:
 
     def _meet(self, ray, candidate, points, directions, outline, distance) -> None:
         normal = self.normals[candidate]
-        slope = np.einsum("nc,nc->n", directions[ray], normal)
-        height = self.offsets[candidate] - np.einsum("nc,nc->n", points[ray], normal)
+        slope = dots(directions.take(ray, axis=0), normal)
+        height = self.offsets[candidate] - dots(points.take(ray, axis=0), normal)
         with np.errstate(divide="ignore", invalid="ignore"):
             along = height / slope
         near = (along > 0) & (np.abs(height) > self.tolerance) & (along < distance[ray])

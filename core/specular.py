@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .arrays import pick
+from .arrays import dots, pick
 from .globe import Hemisphere
 from .materials import Material
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
@@ -393,7 +393,7 @@ class _Heights:
 
     def __getitem__(self, key):
         row, outline = key
-        return self.outlines.offsets[outline] - np.einsum("nc,nc->n", self.points[row], self.outlines.normals[outline])
+        return self.outlines.offsets[outline] - dots(self.points[row], self.outlines.normals[outline])
 
 
 @dataclass

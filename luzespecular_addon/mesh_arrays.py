@@ -155,12 +155,7 @@ def write_corner_floats(mesh: bpy.types.Mesh, name: str, values: NDArray) -> Non
 
 def read_corner_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float32] | None:
     """Read a FLOAT attribute of the CORNER domain, (l,); None where there is no such attribute."""
-    attribute = mesh.attributes.get(name)
-    if attribute is None or attribute.domain != "CORNER" or len(attribute.data) != len(mesh.loops):
-        return None
-    values = np.empty(len(mesh.loops), np.float32)
-    attribute.data.foreach_get("value", values)
-    return values
+    return _read(mesh, name, "CORNER", "value", (len(mesh.loops),))
 
 
 def write_corner_colours(mesh: bpy.types.Mesh, name: str, colours: NDArray) -> None:
@@ -263,21 +258,20 @@ def write_edge_vectors(mesh: bpy.types.Mesh, name: str, values: NDArray) -> None
 
 def read_edge_vectors(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float32] | None:
     """Read a FLOAT_VECTOR attribute of the EDGE domain, (e, 3); None where there is no such attribute."""
-    attribute = mesh.attributes.get(name)
-    if attribute is None or attribute.domain != "EDGE" or len(attribute.data) != len(mesh.edges):
-        return None
-    values = np.empty((len(mesh.edges), 3), np.float32)
-    attribute.data.foreach_get("vector", values.reshape(-1))
-    return values
+    return _read(mesh, name, "EDGE", "vector", (len(mesh.edges), 3))
 
 
 def read_edge_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float32] | None:
     """Read a FLOAT attribute of the EDGE domain, (e,); None where there is no such attribute."""
+    return _read(mesh, name, "EDGE", "value", (len(mesh.edges),))
+
+
+def _read(mesh: bpy.types.Mesh, name: str, domain: str, item: str, shape: tuple) -> NDArray[np.float32] | None:
     attribute = mesh.attributes.get(name)
-    if attribute is None or attribute.domain != "EDGE" or len(attribute.data) != len(mesh.edges):
+    if attribute is None or attribute.domain != domain or len(attribute.data) != shape[0]:
         return None
-    values = np.empty(len(mesh.edges), np.float32)
-    attribute.data.foreach_get("value", values)
+    values = np.empty(shape, np.float32)
+    attribute.data.foreach_get(item, values.reshape(-1))
     return values
 
 

@@ -6,10 +6,11 @@ import bpy
 from bpy.app.translations import pgettext_rpt as rpt_
 from bpy_extras.io_utils import ExportHelper
 
-from .. import display, pictures
+from .. import pictures
+from .polls import NeedsResults
 
 
-class LUZESPECULAR_OT_save_picture(bpy.types.Operator, ExportHelper):
+class LUZESPECULAR_OT_save_picture(NeedsResults, bpy.types.Operator, ExportHelper):
     """Save a picture of the results with their legend, as a PNG file."""
 
     bl_idname = "luzespecular.save_picture"
@@ -20,14 +21,6 @@ class LUZESPECULAR_OT_save_picture(bpy.types.Operator, ExportHelper):
     filter_glob: bpy.props.StringProperty(default="*.png", options={"HIDDEN"})
     width: bpy.props.IntProperty(name="Width", description="Pixels", default=pictures.SIZE[0], min=64, max=16384)
     height: bpy.props.IntProperty(name="Height", description="Pixels", default=pictures.SIZE[1], min=64, max=16384)
-
-    @classmethod
-    def poll(cls, context):
-        """Grey without results."""
-        if display.has_results(context.scene):
-            return True
-        cls.poll_message_set("There are no results yet: solve first")
-        return False
 
     def execute(self, context):
         """Render and write the file."""

@@ -9,12 +9,13 @@ from bpy.app.translations import pgettext_iface as iface_
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
 from .. import display, drawing, probe
+from .polls import NeedsResults
 from .reports import redraw
 
 _OFFSET = 18
 
 
-class LUZESPECULAR_OT_probe(bpy.types.Operator):
+class LUZESPECULAR_OT_probe(NeedsResults, bpy.types.Operator):
     """Read the light under the mouse: total, components, error; click to keep a reading shown."""
 
     bl_idname = "luzespecular.probe"
@@ -27,14 +28,6 @@ class LUZESPECULAR_OT_probe(bpy.types.Operator):
     _mouse: tuple[int, int]
     _region: bpy.types.Region | None
     _handle: object
-
-    @classmethod
-    def poll(cls, context):
-        """Grey without results."""
-        if display.has_results(context.scene):
-            return True
-        cls.poll_message_set("There are no results yet: solve first")
-        return False
 
     def invoke(self, context, event):
         """Begin to follow the mouse."""

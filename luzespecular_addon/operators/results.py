@@ -9,23 +9,16 @@ from bpy_extras.io_utils import ExportHelper
 
 from ...core import files, tables
 from .. import display
+from .polls import NeedsResults
 
 
-class LUZESPECULAR_OT_clear_results(bpy.types.Operator):
+class LUZESPECULAR_OT_clear_results(NeedsResults, bpy.types.Operator):
     """Remove all results from the scene: attributes, colours, the fine faces and the tables."""
 
     bl_idname = "luzespecular.clear_results"
     bl_label = "Clear Results"
     bl_description = "Remove all results from the scene: attributes, colours, the fine faces and the tables"
     bl_options: ClassVar[set[str]] = {"UNDO"}
-
-    @classmethod
-    def poll(cls, context):
-        """Grey without results."""
-        if display.has_results(context.scene):
-            return True
-        cls.poll_message_set("There are no results yet: solve first")
-        return False
 
     def execute(self, context):
         """Clear."""

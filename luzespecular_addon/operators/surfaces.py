@@ -7,6 +7,7 @@ from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import participants
 from ..properties.surfaces import ROLE_ITEMS
+from .polls import NeedsObjectMode
 
 
 class LUZESPECULAR_OT_set_role(bpy.types.Operator):
@@ -35,7 +36,7 @@ class LUZESPECULAR_OT_set_role(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class LUZESPECULAR_OT_select_role(bpy.types.Operator):
+class LUZESPECULAR_OT_select_role(NeedsObjectMode, bpy.types.Operator):
     """Select all objects of a role."""
 
     bl_idname = "luzespecular.select_role"
@@ -44,14 +45,6 @@ class LUZESPECULAR_OT_select_role(bpy.types.Operator):
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     role: bpy.props.EnumProperty(name="Role", description="The part the objects play", items=ROLE_ITEMS)
-
-    @classmethod
-    def poll(cls, context):
-        """Selecting needs Object Mode."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Leave Edit Mode first (Tab)")
-            return False
-        return True
 
     def execute(self, context):
         """Select."""

@@ -14,9 +14,10 @@ from bpy_extras.io_utils import ExportHelper
 from ...core import files
 from .. import floor_grid, mesh_arrays, participants, placements, work_planes, writeback
 from ..properties.kinds import FloatProperty
+from .polls import NeedsObjectMode
 
 
-class LUZESPECULAR_OT_add_work_plane(bpy.types.Operator):
+class LUZESPECULAR_OT_add_work_plane(NeedsObjectMode, bpy.types.Operator):
     """Lay a grid of points above the floor of the selected objects."""
 
     bl_idname = "luzespecular.add_work_plane"
@@ -29,14 +30,6 @@ class LUZESPECULAR_OT_add_work_plane(bpy.types.Operator):
     height: FloatProperty(name="Height (m)", description="Above the floor", default=work_planes.HEIGHT, min=0.0)
     spacing: FloatProperty(name="Spacing (m)", description="Distance of the points", default=0.25, min=0.01)
     border: FloatProperty(name="Border (m)", description="Strip along the walls that is left out", default=0.0, min=0.0)
-
-    @classmethod
-    def poll(cls, context):
-        """Need Object Mode."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Leave Edit Mode first (Tab)")
-            return False
-        return True
 
     def execute(self, context):
         """Add the plane."""

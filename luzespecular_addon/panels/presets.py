@@ -12,7 +12,8 @@ from .. import library, places
 class _Presets(PresetPanel):
     preset_operator = "script.execute_preset"
 
-    def _draw_saved(self, context: bpy.types.Context) -> None:
+    def draw(self, context):
+        """Draw what users saved."""
         self.layout.label(text="Own presets")
         if bpy.utils.preset_paths(self.preset_subdir):
             super().draw(context)
@@ -42,7 +43,7 @@ class LUZESPECULAR_PT_site_presets(_Presets, bpy.types.Panel):
             for place in some:
                 button = column.operator("luzespecular.set_place", text=place.name, translate=False)
                 button.place = place.name
-        self._draw_saved(context)
+        super().draw(context)
 
 
 class LUZESPECULAR_PT_sky_presets(_Presets, bpy.types.Panel):
@@ -53,10 +54,6 @@ class LUZESPECULAR_PT_sky_presets(_Presets, bpy.types.Panel):
     preset_subdir = "luzespecular/sky"
     preset_add_operator = "luzespecular.sky_preset"
 
-    def draw(self, context):
-        """Draw."""
-        self._draw_saved(context)
-
 
 class LUZESPECULAR_PT_accuracy_presets(_Presets, bpy.types.Panel):
     """Accuracies saved by the user."""
@@ -66,10 +63,6 @@ class LUZESPECULAR_PT_accuracy_presets(_Presets, bpy.types.Panel):
     preset_subdir = "luzespecular/accuracy"
     preset_add_operator = "luzespecular.accuracy_preset"
 
-    def draw(self, context):
-        """Draw."""
-        self._draw_saved(context)
-
 
 class LUZESPECULAR_PT_material_presets(_Presets, bpy.types.Panel):
     """Materials saved by the user."""
@@ -78,10 +71,6 @@ class LUZESPECULAR_PT_material_presets(_Presets, bpy.types.Panel):
     bl_description = "Materials saved by the user"
     preset_subdir = "luzespecular/material"
     preset_add_operator = "luzespecular.material_preset"
-
-    def draw(self, context):
-        """Draw."""
-        self._draw_saved(context)
 
 
 class LUZESPECULAR_MT_library(bpy.types.Menu):

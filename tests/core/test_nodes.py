@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from layout_samples import BLACK, CELL, WHITE, geometry_of, shelf, wall, wall_and
 
 import luzespecular as luz
-from luzespecular.nodes import DOUBT, STEEP, Nodes, _blocks, settled
+from luzespecular.nodes import DOUBT, STEEP, Nodes, settled
 
 
 def nodes_of(geometry):
@@ -344,7 +344,7 @@ def test_cells_looked_at_as_one_need_not_fill_a_run(spacing):
     fracture = geometry_of(wall()).fracture
     grids = tuple(replace(grid, spacing=spacing) for grid in fracture.grids)
     assert any(grid.shape[0] % spacing[0] or grid.shape[1] % spacing[1] for grid in grids)
-    block, middle = _blocks(replace(fracture, grids=grids))
+    block, middle = replace(fracture, grids=grids).blocks
     mine = block >= 0
     assert block.max() < len(middle) and set(block[mine]) == set(range(len(middle)))
     np.testing.assert_array_equal(block[middle], np.arange(len(middle))[:, None] + [0, 0])
