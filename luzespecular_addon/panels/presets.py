@@ -14,6 +14,10 @@ class _Presets(PresetPanel):
 
     def draw(self, context):
         """Draw what users saved."""
+        self.draw_saved(context)
+
+    def draw_saved(self, context: bpy.types.Context) -> None:
+        """Draw the presets that users saved, or where to save the first."""
         self.layout.label(text="Own presets")
         if bpy.utils.preset_paths(self.preset_subdir):
             super().draw(context)
@@ -43,7 +47,7 @@ class LUZESPECULAR_PT_site_presets(_Presets, bpy.types.Panel):
             for place in some:
                 button = column.operator("luzespecular.set_place", text=place.name, translate=False)
                 button.place = place.name
-        super().draw(context)
+        self.draw_saved(context)
 
 
 class LUZESPECULAR_PT_sky_presets(_Presets, bpy.types.Panel):

@@ -201,5 +201,5 @@ class _Layout:
 class _Panel:
     layout = _Layout()
 
-    def _draw_saved(self, context):
+    def draw_saved(self, context):
         """Blender's own drawing of saved presets needs a window."""
