@@ -4,37 +4,41 @@
 
 Each scene of ``data/`` is solved by both methods with the same bands and faces, and held against its reference. Every
 setting runs in a process of its own, so that its peak memory is its own; three times where the budget of seconds
-allows, and the median counts. What is measured is kept in ``measurements.json`` after every setting: a run that was
-broken off goes on where it stopped, and begins anew at another commit. ``--docs`` writes page and picture into docs/.
+allows, and the median counts. The whole ends within ``--minutes``: each scene gets its share of what is left, half for
+either method, and what does not fit, by what coarser settings took, is left out and said to be. What is measured is
+kept in ``measurements.json`` after every setting: a run that was broken off goes on where it stopped, and begins anew
+at another commit. ``--docs`` writes page and picture into docs/.
 """
 
 from __future__ import annotations
 
 import argparse
-import datetime
 import json
 import os
-import platform
-import resource
 import statistics
-import subprocess
-import sys
 import time
 from pathlib import Path
 
+import apart
 import hit_or_miss
 import numpy as np
 import scenes
+from apart import ROOT, percent
 
 import luzespecular as luz
 
-ROOT = Path(__file__).resolve().parents[1]
 METHODS = {"published": "one direction per parcel", "solver": "LuzEspecular"}
-BANDS = (20, 30, 40, 60, 90, 120)
+BANDS = (20, 40, 60, 90, 120)
+USUAL = 60
+"""Bands up to here come first, then accuracies; finer ones have what is left of the budget."""
+
 ACCURACIES = (0.03, 0.01)
 REPEATS = 3
+OF_BUDGET = 0.2
+"""Share of a method's budget within which a setting is run again, for its median."""
+
 LARGE = {"furnished": 3.0}
-"""Scenes that may take this many times the budget."""
+"""Scenes that get this many shares of the budget."""
 MARK = "<!-- From here on written by benchmarks/time_and_error.py -->"
 
 
@@ -111,58 +115,60 @@ def run_here(scene_name: str, method: str, setting: dict, threads: int, most_sec
     out = runs[-1]
     for key in {"seconds", "prepare"} & out.keys():
         out[key] = statistics.median(r[key] for r in runs)
-    return out | {"runs": len(runs), "peak_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9}
+    return out | {"runs": len(runs), "peak_gb": apart.peak_gb()}
 
 
-def run_apart(task: dict, limit: float) -> dict:
-    """Measure one setting in a process of its own; ``failed`` says why where it did not come to an end."""
-    command = [sys.executable, str(Path(__file__).resolve()), "--one", json.dumps(task)]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=limit, check=False)
-    except subprocess.TimeoutExpired:
-        return {"failed": f"not done within {limit:.0f} s"}
-    if done.returncode:
-        last = done.stderr.strip().splitlines()
-        return {"failed": last[-1] if last else f"exit status {done.returncode}"}
-    return json.loads(done.stdout.strip().splitlines()[-1])
+def settings(bands: list[int], accuracies: list[float]) -> list[tuple[str, dict]]:
+    """Methods and settings in the order in which they are measured."""
+    ordered = sorted(bands)
+    usual, finer = (
+        [(method, {"bands": b}) for b in ordered if (b <= USUAL) == kind for method in METHODS]
+        for kind in (True, False)
+    )
+    return [*usual, *(("solver", {"accuracy": a}) for a in accuracies), *finer]
 
 
-def measure_scene(name: str, args, kept: dict, keep) -> None:
-    """Measure both methods at all settings that the budget allows, old and new in turn."""
+def shares(names: list[str], seconds: float) -> float:
+    """Seconds that the first of the scenes gets of those left for all."""
+    weights = [LARGE.get(name, 1.0) for name in names]
+    return seconds * weights[0] / sum(weights)
+
+
+def measure_scene(name: str, args, kept: dict, keep, seconds: float) -> None:
+    """Measure both methods at all settings that so many seconds allow, old and new in turn."""
     scene = scenes.load(name)
     entry = kept.setdefault(name, {"title": scene.title, "origin": scene.origin, "quads": scene.quads, "measured": []})
     entry["noise"] = {m.label: 100 * m.noise for m in scene.measures}
     known = {(row["method"], json.dumps(row["setting"])) for row in entry["measured"]}
-    spent = dict.fromkeys(METHODS, 0.0)
-    budget = args.seconds * LARGE.get(name, 1.0)
-    tasks = [(method, {"bands": b}) for b in args.bands for method in METHODS]
-    tasks += [("solver", {"accuracy": a}) for a in args.accuracies]
-    for method, setting in tasks:
+    budget = seconds / len(METHODS)
+    left = dict.fromkeys(METHODS, budget)
+    for method, setting in settings(args.bands, args.accuracies):
         if (method, json.dumps(setting)) in known:
             continue
-        left = max(budget - spent[method], budget / 2)
-        if least_seconds(entry["measured"], method, setting) > left:
+        if least_seconds(entry["measured"], method, setting) > left[method]:
             row = {"failed": "left out: over the budget of seconds"}
         else:
             task = {"scene": name, "method": method, "setting": setting, "threads": args.threads}
-            task |= {"most_seconds": budget / 5, "repeats": 1 if args.quick else REPEATS}
-            start = time.perf_counter()
-            row = run_apart(task, left + 2)
-            spent[method] += time.perf_counter() - start
+            task |= {"most_seconds": OF_BUDGET * budget, "repeats": 1 if args.quick else REPEATS}
+            row = apart.run(__file__, task, left[method])
+            left[method] -= row["wall"]
         entry["measured"].append({"method": method, "setting": setting} | row)
         keep()
         print(f"{name:18}{method:11}{json.dumps(setting):20}{summary(row)}", flush=True)
 
 
 def least_seconds(rows: list[dict], method: str, setting: dict) -> float:
-    """Seconds that a setting takes at least, by what coarser ones took: in proportion, or endless where they failed."""
+    """Seconds that a setting takes at least, by what one run of coarser ones took: in proportion, or endless where they
+    failed. Starting and reading the values at places count as well.
+    """
     ((kind, value),) = setting.items()
     found = 0.0
     for row in rows:
         if row["method"] == method and kind in row["setting"]:
             finer = value / row["setting"][kind] if kind == "bands" else row["setting"][kind] / value
             if finer > 1:
-                found = max(found, row["seconds"] * finer if "seconds" in row else float("inf"))
+                once = row["wall"] - row["seconds"] * (row["runs"] - 1) if "seconds" in row else float("inf")
+                found = max(found, once * finer)
     return found
 
 
@@ -189,11 +195,6 @@ def label(setting: dict) -> str:
 def in_order(rows: list[dict]) -> list[dict]:
     """Bands rising, then accuracies falling."""
     return sorted(rows, key=lambda r: (r["setting"].get("bands", 10_000), -r["setting"].get("accuracy", 0)))
-
-
-def percent(value: float) -> str:
-    """Three digits that count, no more than three decimals."""
-    return f"{value:.3f}" if abs(value) < 1 else f"{value:.2f}" if abs(value) < 10 else f"{value:.0f}"
 
 
 def summary_table(kept: dict, bands: int) -> list[str]:
@@ -271,8 +272,7 @@ def page(state: dict, picture: str) -> str:
     lines = [
         "## Measured",
         "",
-        f"{about['date']}, commit {about['commit']}; Python {about['python']}, NumPy {about['numpy']}, "
-        f"{about['machine']}, {about['cores']} cores, {about['threads']} threads.",
+        f"{apart.about_line(about)} All within {about['minutes']:g} minutes: what did not fit is left out.",
         "",
         *summary_table(kept, bands),
         "",
@@ -335,32 +335,10 @@ def draw(state: dict, path: Path) -> None:
     plt.close(figure)
 
 
-def about(threads: int) -> dict:
-    """Where and when the measurements are made."""
-
-    def git(*words: str) -> str:
-        done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
-        return done.stdout.strip()
-
-    commit = git("rev-parse", "--short", "HEAD") or "unknown"
-    changed = " with changes of the solver on top" if git("status", "--porcelain", "--", "core") else ""
-    return {
-        "date": datetime.date.today().isoformat(),
-        "commit": commit + changed,
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "machine": f"{platform.system()} {platform.machine()}",
-        "cores": os.cpu_count(),
-        "threads": threads,
-    }
-
-
 def write_docs(state: dict, docs: Path) -> None:
     """Put picture and tables into docs/, below what was written there by hand."""
     draw(state, docs / "images" / "time_and_error.png")
-    path = docs / "time-and-error.md"
-    head = path.read_text(encoding="utf-8").split(MARK)[0].rstrip() if path.exists() else "# Time and error"
-    path.write_text(f"{head}\n\n{MARK}\n\n{page(state, 'images/time_and_error.png')}", encoding="utf-8")
+    apart.into_docs(docs / "time-and-error.md", MARK, "Time and error", page(state, "images/time_and_error.png"))
 
 
 def main():
@@ -369,7 +347,7 @@ def main():
     ap.add_argument("--scenes", nargs="+", choices=scenes.NAMES, default=list(scenes.NAMES))
     ap.add_argument("--bands", nargs="+", type=int, default=list(BANDS))
     ap.add_argument("--accuracies", nargs="*", type=float, default=list(ACCURACIES))
-    ap.add_argument("--seconds", type=float, default=20.0, help="budget for each scene and method")
+    ap.add_argument("--minutes", type=float, default=10.0, help="budget for all scenes together")
     ap.add_argument("--threads", type=int, default=os.cpu_count() or 1)
     ap.add_argument("--output", type=Path, default=ROOT / "build" / "time_and_error")
     ap.add_argument("--fresh", action="store_true", help="measure again what was measured at this commit")
@@ -384,18 +362,16 @@ def main():
         args.bands, args.accuracies = [8], []
     args.output.mkdir(parents=True, exist_ok=True)
     path = args.output / "measurements.json"
-    state = {"about": about(args.threads), "scenes": {}}
-    if path.exists() and not args.fresh:
-        before = json.loads(path.read_text(encoding="utf-8"))
-        same = ("commit", "threads", "numpy", "cores")
-        if all(before["about"][key] == state["about"][key] for key in same):
-            state["scenes"] = before["scenes"]
+    state = {"about": apart.about(args.threads) | {"minutes": args.minutes}, "scenes": {}}
+    if not args.fresh:
+        state["scenes"] = apart.kept_before(path, state["about"]).get("scenes", {})
 
     def keep() -> None:
         path.write_text(json.dumps(state, indent=1) + "\n", encoding="utf-8")
 
-    for name in args.scenes:
-        measure_scene(name, args, state["scenes"], keep)
+    end = time.perf_counter() + 60 * args.minutes
+    for k, name in enumerate(args.scenes):
+        measure_scene(name, args, state["scenes"], keep, shares(args.scenes[k:], end - time.perf_counter()))
     state["scenes"] = {name: state["scenes"][name] for name in scenes.NAMES if name in state["scenes"]}
     keep()
     draw(state, args.output / "time_and_error.png")

@@ -1,5 +1,6 @@
 """The benchmark still runs, in its smallest setting; its references are what they say. No timings are asserted."""
 
+import argparse
 import importlib.util
 import json
 import math
@@ -21,7 +22,7 @@ def rooms():
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(BENCHMARKS))
         loaded = {}
-        for name in ("scenes", "hit_or_miss", "brute_force"):
+        for name in ("scenes", "hit_or_miss", "brute_force", "apart", "time_and_error"):
             spec = importlib.util.spec_from_file_location(name, BENCHMARKS / f"{name}.py")
             loaded[name] = importlib.util.module_from_spec(spec)
             patch.setitem(sys.modules, name, loaded[name])
@@ -48,6 +49,39 @@ def test_runs_and_writes_errors_of_both_methods(tmp_path):
 
     again = subprocess.run([*command, "--scenes", *chosen], capture_output=True, text=True, timeout=60, check=False)
     assert again.returncode == 0 and " s " not in again.stdout  # what is measured stays
+
+
+def test_what_would_not_fit_is_left_out(rooms, monkeypatch):
+    """A run ends within its minutes: finer settings are foretold from coarser ones, the rest is one scene's share."""
+    tool, asked = rooms["time_and_error"], []
+
+    def measured(script, task, limit):
+        asked.append((task["method"], *task["setting"].items(), limit))
+        if task["method"] == "published":
+            return {"failed": "not done", "wall": limit}
+        return {"seconds": 2.0, "runs": 3, "wall": 8.0, "peak_gb": 0.1, "errors": {}}  # 2 s to start, 2 s a run
+
+    monkeypatch.setattr(rooms["apart"], "run", measured)
+    kept = {}
+    args = argparse.Namespace(bands=[60, 20, 90], accuracies=[0.03], threads=1, quick=False)
+    tool.measure_scene("white_box", args, kept, lambda: None, 60.0)
+    assert asked == [
+        ("published", ("bands", 20), 30.0),
+        ("solver", ("bands", 20), 30.0),
+        ("solver", ("bands", 60), 22.0),  # 3 times 4 s or more
+        ("solver", ("accuracy", 0.03), 14.0),
+    ]
+    rows = {(row["method"], *row["setting"].values()): row for row in kept["white_box"]["measured"]}
+    assert set(rows) == {(m, b) for m in ("published", "solver") for b in (20, 60, 90)} | {("solver", 0.03)}
+    for left_out in (("published", 60), ("published", 90), ("solver", 90)):
+        assert "left out" in rows[left_out]["failed"]
+
+
+def test_scenes_share_what_is_left(rooms):
+    share = rooms["time_and_error"].shares
+    assert share(["white_box", "furnished"], 80.0) == 20.0
+    assert share(["furnished", "white_box"], 80.0) == 60.0
+    assert share(["white_box"], 7.0) == 7.0
 
 
 def test_every_scene_is_sound(rooms):
