@@ -5,7 +5,7 @@ Each surface remembers which faces of the user's own mesh its triangles come fro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .. import core as luz
 from . import materials, participants, placements
-from .notices import Notice, stop_on_errors
+from .notices import Notice, about, stop_on_errors
 from .translations import solver_message
 
 _LEAST_AREA = 1e-12
@@ -112,7 +112,7 @@ def current_fingerprint(context: bpy.types.Context) -> str:
 
 def _in_edit_mode(objects: list[bpy.types.Object]) -> list[Notice]:
     text = rpt_("Object '{name}' is in Edit Mode: leave Edit Mode (Tab), then solve")
-    return [Notice("ERROR", text.format(name=object_.name)) for object_ in objects if object_.mode == "EDIT"]
+    return [about(object_.name, "ERROR", text) for object_ in objects if object_.mode == "EDIT"]
 
 
 def _left_out(objects: list[bpy.types.Object], site: bpy.types.PropertyGroup) -> list[Notice]:
@@ -128,7 +128,7 @@ def _left_out(objects: list[bpy.types.Object], site: bpy.types.PropertyGroup) ->
             text = rpt_("Light '{name}' is left out: the Sun comes from site and time, lamps from luminous materials")
         else:
             continue
-        notices.append(Notice("INFO" if object_.type == "LIGHT" else "WARNING", text.format(name=object_.name)))
+        notices.append(about(object_.name, "INFO" if object_.type == "LIGHT" else "WARNING", text))
     return notices
 
 
@@ -142,7 +142,8 @@ class _Builder:
         self.luminous = False
         self._notices: list[Notice] = []
         self._optics: dict[bpy.types.Material | None, materials.Optics | None] = {}
-        self._without_material: list[str] = []
+        self._of_materials: list[tuple[bpy.types.Material, Notice]] = []
+        self._users: dict[bpy.types.Material | None, list[str]] = {}
         self._sharing: list[str] = []
 
     def add(self, part: placements.Part) -> None:
@@ -152,7 +153,7 @@ class _Builder:
                 "Object '{name}' has vertices or a transform that are not finite numbers (NaN): "
                 "mend them, or set its role to Ignore"
             )
-            self._tell("ERROR", text, part)
+            self._notices.append(about(part.object_name, "ERROR", text))
             return
         areas = _areas(part.vertices, part.faces)
         sound = areas > _LEAST_AREA * areas.max(initial=0.0)
@@ -165,7 +166,7 @@ class _Builder:
             material = optics.material()
             self.scene.add(part.name, part.vertices, material, faces=part.faces[sound], two_sided=part.two_sided)
         except luz.SceneError as error:
-            self._notices.append(Notice("ERROR", solver_message(error)))
+            self._notices.append(Notice("ERROR", solver_message(error), (part.object_name,)))
             return
         own_faces = None if part.own_faces is None else part.own_faces[part.polygons[sound]]
         self.surfaces.append(ExportedSurface(part.name, part.object_name, part.receiver, own_faces))
@@ -177,7 +178,11 @@ class _Builder:
 
     def notices(self) -> list[Notice]:
         """Return all that is to be told, the same thing about many objects in one."""
-        notices = list(dict.fromkeys(self._notices))
+        of_materials = [
+            replace(notice, objects=tuple(dict.fromkeys(self._users[material])))
+            for material, notice in self._of_materials
+        ]
+        notices = [*of_materials, *dict.fromkeys(self._notices)]
         if not self.surfaces and not any(notice.level == "ERROR" for notice in notices):
             text = rpt_(
                 "There is nothing to light: the scene has no object with faces that renders. "
@@ -186,7 +191,7 @@ class _Builder:
             notices.append(Notice("ERROR", text))
         for names, text in (
             (
-                self._without_material,
+                self._users.get(None, []),
                 rpt_("Without material, so a diffuse reflectance of {value:g} is used: {names}"),
             ),
             (
@@ -196,24 +201,22 @@ class _Builder:
         ):
             if names:
                 value = materials.REFLECTANCE_WITHOUT_MATERIAL
-                notices.append(Notice("INFO", text.format(names=_listed(names), value=value)))
+                names = list(dict.fromkeys(names))
+                notices.append(Notice("INFO", text.format(names=_listed(names), value=value), tuple(names)))
         return notices
-
-    def _tell(self, level: str, text: str, part: placements.Part, **values: object) -> None:
-        self._notices.append(Notice(level, text.format(name=part.object_name, **values)))
 
     def _tell_flat(self, part: placements.Part, sound: NDArray[np.bool_]) -> None:
         if not sound.any():
             text = rpt_(
                 "Object '{name}' has no face with an area and is left out: check its scale, or set its role to Ignore"
             )
-            self._tell("WARNING", text, part)
+            self._notices.append(about(part.object_name, "WARNING", text))
             return
         # A polygon may have slivers and an area all the same; what text and curves bring along, nobody can mend.
         count = np.setdiff1d(part.polygons, part.polygons[sound]).size
         if count and part.kind == "MESH":
             text = rpt_("Object '{name}': {count} faces without area are left out; Merge by Distance mends it")
-            self._tell("WARNING", text, part, count=count)
+            self._notices.append(about(part.object_name, "WARNING", text, count=count))
 
     def _part_optics(self, part: placements.Part) -> materials.Optics | None:
         """Return the optics of a part, noting once what is odd about its material; None where it cannot be."""
@@ -221,10 +224,9 @@ class _Builder:
         if material not in self._optics:
             optics = materials.read(material)
             notices = materials.notices(material, optics) if material else []
-            self._notices += notices
+            self._of_materials += [(material, notice) for notice in notices]
             self._optics[material] = None if any(notice.level == "ERROR" for notice in notices) else optics
-        if material is None:
-            self._without_material.append(part.object_name)
+        self._users.setdefault(material, []).append(part.object_name)
         optics = self._optics[material]
         if optics is None or optics.refractive_index is None or not part.closed:
             return optics
@@ -232,12 +234,11 @@ class _Builder:
             "Object '{name}' is a solid pane: light passes two of its faces, and the glass's mirror reflection is "
             "neglected. Model the pane as single faces for exact results"
         )
-        self._tell("WARNING", text, part)
+        self._notices.append(about(part.object_name, "WARNING", text))
         return optics.shared_by_two_faces()
 
 
 def _listed(names: list[str]) -> str:
-    names = list(dict.fromkeys(names))
     return ", ".join(names[:_NAMES_LISTED]) + (" …" if len(names) > _NAMES_LISTED else "")
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import bpy
 from bpy.app.handlers import persistent
 
-from . import display, following, live, session
+from . import display, following, live, scene_check, session
 
 
 @persistent
 def _file_loaded(_file: str, *_unused: object) -> None:
     session.current.forget()
     live.stop()
+    for manager in bpy.data.window_managers:
+        scene_check.clear(manager)
 
 
 @persistent

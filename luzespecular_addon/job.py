@@ -1,10 +1,11 @@
-"""A study on its way in a thread of its own. No bpy: the thread may run while Blender draws."""
+"""What runs in a thread of its own, a study above all. No bpy: the thread may run while Blender draws."""
 
 from __future__ import annotations
 
 import queue
 import threading
 import time
+from collections.abc import Callable
 
 from .. import core as luz
 from .session import Session
@@ -12,25 +13,21 @@ from .study import Study
 from .work_planes import Reading
 
 
-class Job:
-    """A study on its way in a thread of its own; knows nothing of Blender.
+class Task:
+    """A function on its way in a thread of its own; knows nothing of Blender.
 
     Attributes
     ----------
-    result : luz.Result or None
-    readings : list of work_planes.Reading
-        What was read on the work planes.
+    result : object
+        What the function returned; None until then.
     error : Exception or None
         Why there is no result.
     """
 
-    def __init__(self, planned: Study, kept: Session):
-        self.study = planned
-        self._progress: queue.SimpleQueue[tuple[float, str]] = queue.SimpleQueue()
-        self.result: luz.Result | None = None
-        self.readings: list[Reading] = []
+    def __init__(self, work: Callable[[], object]):
+        self.result: object = None
         self.error: Exception | None = None
-        self._kept = kept
+        self._work = work
         self._cancelled = threading.Event()
         self._thread = threading.Thread(target=self._run, name="LuzEspecular", daemon=True)
         self._started = 0.0
@@ -46,6 +43,51 @@ class Job:
         return time.monotonic() - self._started
 
     def cancel(self) -> None:
+        """Wait for it no longer: what it returns is not asked for."""
+        self._cancelled.set()
+
+    @property
+    def finished(self) -> bool:
+        """Whether there is a result or an error, or nobody waits for them."""
+        return self._cancelled.is_set() or not self._thread.is_alive()
+
+    def wait(self) -> None:
+        """Block until it has stopped."""
+        self._thread.join()
+
+    def latest(self, timeout: float = 0.0) -> tuple[float, str] | None:
+        """Return the last progress told since the last look, waiting up to `timeout` seconds; None without news."""
+        return None
+
+    def _run(self) -> None:
+        try:
+            self.result = self._work()
+        except Exception as error:  # noqa: BLE001 - handed over to the main thread, which tells the user
+            self.error = error
+
+
+class Job(Task):
+    """A study on its way.
+
+    Attributes
+    ----------
+    result : luz.Result or None
+    readings : list of work_planes.Reading
+        What was read on the work planes.
+    error : Exception or None
+        Why there is no result.
+    """
+
+    result: luz.Result | None
+
+    def __init__(self, planned: Study, kept: Session):
+        super().__init__(self._solve)
+        self.study = planned
+        self.readings: list[Reading] = []
+        self._progress: queue.SimpleQueue[tuple[float, str]] = queue.SimpleQueue()
+        self._kept = kept
+
+    def cancel(self) -> None:
         """Ask the solver to stop at its next step."""
         self._cancelled.set()
 
@@ -53,10 +95,6 @@ class Job:
     def finished(self) -> bool:
         """Whether there is a result or an error."""
         return not self._thread.is_alive()
-
-    def wait(self) -> None:
-        """Block until the solver has stopped."""
-        self._thread.join()
 
     def latest(self, timeout: float = 0.0) -> tuple[float, str] | None:
         """Return the last progress told since the last look, waiting up to `timeout` seconds; None without news."""
@@ -72,13 +110,10 @@ class Job:
         self._progress.put((fraction, stage))
         return not self._cancelled.is_set()
 
-    def _run(self) -> None:
-        try:
-            result = self.study.run(self._kept, self._tell)
-            self.readings = self.study.read(result, self._tell)
-            self.result = result
-        except Exception as error:  # noqa: BLE001 - handed over to the main thread, which tells the user
-            self.error = error
+    def _solve(self) -> luz.Result:
+        result = self.study.run(self._kept, self._tell)
+        self.readings = self.study.read(result, self._tell)
+        return result
 
 
 def seconds_left(elapsed: float, fraction: float) -> float | None:

@@ -132,6 +132,10 @@ class Live:
         settle = self._quick and now - self._changed_at > _REST
         if not (self._wanted or settle):
             return self._quick
+        if bpy.context.mode.startswith("EDIT"):  # attributes cannot be written there
+            self._wanted = self._quick = False
+            _tell(iface_("Leave Edit Mode first (Tab)"))
+            return False
         if (settle or now - self._verified_at > 2.0 * _REST) and not self._verify():
             return False
         self._verified_at = now  # the scene hardly changes while one drags

@@ -56,12 +56,8 @@ def read_triangles(mesh: bpy.types.Mesh) -> TriangulatedMesh:
 
 
 def _is_closed(mesh: bpy.types.Mesh) -> bool:
-    if not len(mesh.loops):
-        return False
-    edges = np.empty(len(mesh.loops), np.int32)
-    mesh.attributes[".corner_edge"].data.foreach_get("value", edges)
-    uses = np.bincount(edges, minlength=len(mesh.edges))
-    return bool(np.all(uses == 2))
+    uses = np.bincount(corner_edges(mesh), minlength=len(mesh.edges))
+    return bool(len(mesh.loops) and np.all(uses == 2))
 
 
 def corner_counts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
@@ -106,6 +102,39 @@ def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     if len(vertices):
         mesh.attributes[".corner_vert"].data.foreach_get("value", vertices)
     return vertices
+
+
+def corner_edges(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Return the edge that begins at each corner, (l,) int32."""
+    edges = np.empty(len(mesh.loops), np.int32)
+    if len(edges):
+        mesh.attributes[".corner_edge"].data.foreach_get("value", edges)
+    return edges
+
+
+def select_faces(mesh: bpy.types.Mesh, faces: NDArray[np.integer]) -> None:
+    """Select some faces with their edges and vertices, and nothing else; where any of them are hidden, all are shown.
+
+    The mesh must not be in Edit Mode.
+    """
+    chosen, hidden = (np.zeros(len(mesh.polygons), bool) for _ in range(2))
+    chosen[faces] = True
+    mesh.polygons.foreach_get("hide", hidden)
+    corners = np.repeat(chosen, corner_counts(mesh))
+    active = active_names(mesh)
+    for name, domain, used in (
+        ("vert", "POINT", (len(mesh.vertices), corner_vertices(mesh)[corners])),
+        ("edge", "EDGE", (len(mesh.edges), corner_edges(mesh)[corners])),
+        ("poly", "FACE", (len(mesh.polygons), faces)),
+    ):
+        flags = np.zeros(used[0], bool)
+        flags[used[1]] = True
+        # Made anew, since Blender 5.0 writes to nowhere where it made those of new edges itself.
+        remove_attribute(mesh, f".select_{name}")
+        mesh.attributes.new(f".select_{name}", "BOOLEAN", domain).data.foreach_set("value", flags)
+        if hidden[faces].any():
+            remove_attribute(mesh, f".hide_{name}")
+    restore_active(mesh, active)
 
 
 def triangle_corners(mesh: bpy.types.Mesh) -> NDArray[np.int32]:

@@ -11,10 +11,19 @@ Level = Literal["ERROR", "WARNING", "INFO"]
 
 @dataclass(frozen=True)
 class Notice:
-    """One remark, in the user's language, that names the thing and the remedy."""
+    """One remark, in the user's language, that names the thing and the remedy.
+
+    Attributes
+    ----------
+    level : "ERROR", "WARNING" or "INFO"
+    text : str
+    objects : tuple of str
+        Names of the objects concerned, where they are known.
+    """
 
     level: Level
     text: str
+    objects: tuple[str, ...] = ()
 
 
 class BadInput(Exception):
@@ -34,6 +43,11 @@ class BadInput(Exception):
 def refuse(text: str) -> BadInput:
     """Return the exception for a single problem."""
     return BadInput([Notice("ERROR", text)])
+
+
+def about(object_name: str, level: Level, text: str, **values: object) -> Notice:
+    """Return a notice about an object, with its name and further values filled into a text."""
+    return Notice(level, text.format(name=object_name, **values), (object_name,))
 
 
 def stop_on_errors(notices: Iterable[Notice]) -> None:

@@ -12,16 +12,24 @@ from .. import core as luz
 
 if TYPE_CHECKING:
     from .export import Export
+    from .scene_check import Place
 
 
 class Session:
-    """Holds one prepared transfer and what it was prepared for."""
+    """Holds one prepared transfer and what it was prepared for.
+
+    Attributes
+    ----------
+    places : list of tuple of scene_check.Place
+        Where in the user's objects the findings in the panel are.
+    """
 
     def __init__(self):
         self._key: Hashable = None
         self._transfer: luz.Transfer | None = None
         self._result: tuple[tuple[str, int], Export, luz.Result] | None = None
         self._runs = 0
+        self.places: list[tuple[Place, ...]] = []
 
     def get(self, key: Hashable) -> luz.Transfer | None:
         """Return the transfer prepared for the same geometry, materials and options, if it is the one kept."""
@@ -32,8 +40,9 @@ class Session:
         self._key, self._transfer = key, transfer
 
     def forget(self) -> None:
-        """Let go of the transfer and the result, and their memory."""
+        """Let go of the transfer and the result, and their memory, and of what was found."""
         self._key = self._transfer = self._result = None
+        self.places = []
 
     def result_of(self, scene_name: str, run: int) -> tuple[Export, luz.Result] | None:
         """Return the result that a scene shows and what it was solved for, if it is the one kept.

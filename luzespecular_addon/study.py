@@ -15,7 +15,7 @@ from bpy.app.translations import pgettext_rpt as rpt_
 from .. import core as luz
 from ..core import tables
 from ..core.terminal import clock
-from . import display, export, light, session, work_planes, writeback
+from . import display, export, light, scene_check, session, work_planes, writeback
 from .choices import SKY_ITEMS
 from .materials import as_typed
 from .notices import Notice, refuse, stop_on_errors
@@ -188,6 +188,12 @@ def is_current(context: bpy.types.Context, study: Study) -> bool:
         return False
     with context.temp_override(scene=scene, view_layer=layer):
         return export.current_fingerprint(bpy.context) == study.export.fingerprint
+
+
+def found(study: Study, result: luz.Result) -> list[scene_check.Found]:
+    """Return what is odd in the scene that was solved, for the list of the scene check."""
+    told = scene_check.of_notices(study.export.notices)
+    return told + scene_check.of_solver(study.export, result.transfer.findings)
 
 
 def _remarks_of_solver(result: luz.Result) -> list[Notice]:

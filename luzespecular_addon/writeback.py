@@ -20,7 +20,7 @@ from ..core import tables
 from . import errors, mesh_arrays, participants, placements
 from .choices import QUANTITY_ITEMS
 from .export import Export, ExportedSurface
-from .notices import Notice
+from .notices import Notice, about
 
 ILLUMINANCE = "illuminance"
 """FLOAT attribute of the FACE domain: illuminance of the side that the normal looks to [lx]."""
@@ -72,13 +72,13 @@ def refusals(objects: Iterable[bpy.types.Object]) -> list[Notice]:
             continue
         if is_plane and not placements.holds_own_results(object_):
             text = rpt_("Work plane '{name}' shares its mesh or is linked: use Object > Relations > Make Single User")
-            notices.append(Notice("ERROR", text.format(name=object_.name)))
+            notices.append(about(object_.name, "ERROR", text))
         if holds_results(mesh):
             continue
         for name in ATTRIBUTES:
             if name in mesh.attributes:
                 text = rpt_("Object '{name}' has an attribute '{attribute}' that results would overwrite: rename it")
-                notices.append(Notice("ERROR", text.format(name=object_.name, attribute=name)))
+                notices.append(about(object_.name, "ERROR", text, attribute=name))
     return notices
 
 

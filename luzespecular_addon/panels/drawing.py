@@ -8,7 +8,7 @@ import bpy
 
 from ..translations import CONTEXT
 
-_LEVEL_ICONS = {"ERROR": "ERROR", "WARNING": "ERROR", "INFO": "INFO"}
+LEVEL_ICONS = {"ERROR": "CANCEL", "WARNING": "ERROR", "INFO": "INFO"}
 
 
 class Sidebar:
@@ -37,4 +37,4 @@ def draw_notices(layout: bpy.types.UILayout, notices: Iterable, width: float) ->
     """Draw remarks, each with a `level` and a `text`, below one another."""
     column = layout.column(align=True)
     for notice in notices:
-        draw_wrapped(column, notice.text, _LEVEL_ICONS[notice.level], width)
+        draw_wrapped(column, notice.text, LEVEL_ICONS[notice.level], width)

@@ -45,7 +45,8 @@ class LUZESPECULAR_PT_solve(Sidebar, bpy.types.Panel):
 
 def _draw_progress(layout: bpy.types.UILayout, state: bpy.types.PropertyGroup) -> None:
     row = layout.row(align=True)
-    row.progress(factor=state.fraction, text=f"{100.0 * state.fraction:.0f} %  {iface_(state.stage)}")
+    share = f"{100.0 * state.fraction:.0f} %  " if state.fraction else ""
+    row.progress(factor=state.fraction, text=share + iface_(state.stage))
     row.operator("luzespecular.cancel", text="", icon="CANCEL")
     text = iface_("Esc cancels") if state.seconds_left < 0.0 else time_left(state.seconds_left)
     layout.label(text=text, icon="TIME", translate=False)

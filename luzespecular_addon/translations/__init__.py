@@ -7,7 +7,7 @@ import re
 import bpy
 from bpy.app.translations import pgettext_rpt as rpt_
 
-from .pt_br import OPERATORS, SOLVER, STAGES, TEXTS
+from .pt_br import KINDS, OPERATORS, SOLVER, STAGES, TEXTS
 
 CONTEXT = "LuzEspecular"
 """Context of the names of properties and of the items to choose from."""
@@ -19,7 +19,7 @@ _BASE = __package__.rsplit(".", 2)[0]
 
 def table() -> dict[str, dict[tuple[str, str], str]]:
     """Return the translations as Blender registers them."""
-    everywhere = TEXTS | STAGES | SOLVER
+    everywhere = TEXTS | STAGES | KINDS | SOLVER
     texts = {(context, english): text for context in _CONTEXTS for english, text in everywhere.items()}
     texts |= {("Operator", english): text for english, text in OPERATORS.items()}
     return {"pt_BR": texts}

@@ -37,6 +37,7 @@ ROOMS = (
     "pins",
     "probe",
     "results_object",
+    "scene_check",
     "session",
     "smoothing",
     "study",

@@ -172,6 +172,8 @@ def test_panels_draw_in_every_state(addon, bpy, make):
     bpy.context.window_manager.luzespecular.running = True
     draw_all()
     bpy.context.window_manager.luzespecular.running = False
+    assert bpy.ops.luzespecular.check_scene() == {"FINISHED"}
+    draw_all()
 
 
 class _Context:

@@ -112,7 +112,8 @@ def test_every_text_is_translated(addon):
 
 def test_nothing_is_translated_that_nobody_sees(addon):
     seen = {text for _, text in interface_texts()}
-    seen |= set(addon.translations.STAGES) | set(addon.translations.SOLVER)  # what the solver says
+    for said in ("STAGES", "KINDS", "SOLVER"):  # by the solver
+        seen |= set(getattr(addon.translations, said))
     assert not [text for _, text in addon.translations.table()["pt_BR"] if text not in seen]
 
 
@@ -176,6 +177,12 @@ def test_findings_of_the_scene_check_are_translated(addon, monkeypatch):
     assert not foreign
 
 
+def test_kinds_of_findings_are_translated(addon):
+    found = {finding.kind for make, *_ in FAULTS.values() for finding in luzespecular.check(make())}
+    assert len(found) > 15
+    assert not found - set(addon.translations.KINDS)
+
+
 def test_names_of_properties_have_a_context_of_their_own(addon, bpy):
     # Blender's own translation goes before an extension's: "Clear" would read as the verb.
     context = addon.translations.CONTEXT
@@ -203,4 +210,4 @@ def test_translation_reaches_the_interface(addon, bpy):
     except TypeError:
         pytest.skip("this Blender has no translations")
     view.use_translate_interface = True
-    assert bpy.app.translations.pgettext_iface("North Offset") == "Desvio do norte"
+    assert bpy.app.translations.pgettext_iface("North Offset") == "Desvio norte"

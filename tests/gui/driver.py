@@ -85,6 +85,14 @@ class Window:
                 return
         raise AssertionError(f"no property '{name}' in sight")
 
+    def scroll(self, area="VIEW_3D", region="UI", down=True):
+        """Scroll a region to its end or its beginning: steps."""
+        with self.override(region, area):
+            for _ in range(60):
+                (bpy.ops.view2d.scroll_down if down else bpy.ops.view2d.scroll_up)(deltax=0, deltay=120)
+        self.area(area).tag_redraw()
+        yield 0.8
+
     def shot(self, name):
         """A picture of the whole screen as a PNG; Blender's own is black on software drivers, so X's goes first."""
         path = self.folder / f"{name}.png"

@@ -46,11 +46,11 @@ def steps(window):
             ("sidebar-end", "VIEW_3D", "UI", True),
             ("material", "PROPERTIES", "WINDOW", True),
         ):
-            yield from _scroll(window, area, region, down)
+            yield from window.scroll(area, region, down)
             whole = window.shot("whole")
             _crop(whole, window, window.region(region, area), window.folder / f"{name}{ending}.png")
             whole.unlink()
-        yield from _scroll(window, "VIEW_3D", "UI", False)
+        yield from window.scroll(down=False)
 
 
 def _click(window, name, below):
@@ -62,14 +62,6 @@ def _click(window, name, below):
     yield 0.2
     window.press("LEFTMOUSE", x, y)
     yield 0.5
-
-
-def _scroll(window, area, region, down):
-    with window.override(region, area):
-        for _ in range(60):
-            (bpy.ops.view2d.scroll_down if down else bpy.ops.view2d.scroll_up)(deltax=0, deltay=120)
-    window.area(area).tag_redraw()
-    yield 0.8
 
 
 def _crop(picture, window, region, path):

@@ -40,7 +40,7 @@ TEXTS = {
     "Local clock time of the time zone": "Hora legal do fuso horário",
     "Hour": "Hora",
     "Hour of the day, with decimals: 9.5 is half past nine": "Hora do dia, com decimais: 9,5 são nove e meia",
-    "North Offset": "Desvio do norte",
+    "North Offset": "Desvio norte",
     "Angle in degrees from the +Y axis to true north, clockwise seen from above": (
         "Ângulo em graus do eixo +Y ao norte verdadeiro, no sentido horário visto de cima"
     ),

@@ -1,4 +1,4 @@
-"""What the solver says: its stages and messages."""
+"""What the solver says: its stages, kinds of findings and messages."""
 
 from __future__ import annotations
 
@@ -14,6 +14,29 @@ STAGES = {
     "interreflection": "inter-reflexão",
     "solved": "calculado",
     "work planes": "planos de trabalho",
+}
+
+KINDS = {
+    "costly detail": "detalhe custoso",
+    "deep mirror chains": "cadeias longas de espelhos",
+    "empty": "vazio",
+    "endless mirrors": "espelhos sem fim",
+    "endless reflection": "reflexão sem fim",
+    "far away": "longe da origem",
+    "gap": "fresta",
+    "inside out": "do avesso",
+    "inverted normals": "normais invertidas",
+    "no area": "sem área",
+    "no material": "sem valores de material",
+    "no opening": "sem abertura",
+    "not flat": "não plana",
+    "overlap": "sobreposição",
+    "reflectance": "refletância",
+    "seen from behind": "vista por trás",
+    "tiny faces": "faces minúsculas",
+    "turned over": "faces viradas",
+    "turned over in a mesh": "faces viradas na malha",
+    "unit": "unidade",
 }
 
 # What the solver refuses or remarks, by the templates of its messages: a test holds them to the solver's source.
