@@ -15,11 +15,15 @@ PYTHON ?= $(shell for p in python3.11 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test pytest lint format types zip gui blend benchmark clean
+# Blenders that are kept up for long, each in an environment of its own.
+LTS := 4.2 4.5
+
+.PHONY: help demo test pytest blenders $(LTS:%=blender-%) lint format types zip gui blend benchmark clean
 
 help:
 	@echo "make demo       solve the light-shelf room in Blender: lux per surface, pictures (build/demo)"
-	@echo "make test       lint, type checks, all tests"
+	@echo "make test       lint, type checks, all tests; those of Blender's side once more in each of $(LTS)"
+	@echo "make blenders   Blender's side alone in each of $(LTS)"
 	@echo "make lint       ruff check and ruff format --check;  make format mends what can be mended"
 	@echo "make types      mypy on the solver"
 	@echo "make zip        build and validate the Blender extension (dist/)"
@@ -31,10 +35,16 @@ help:
 demo: $(VENV)/.demo
 	@$(PY) examples/light_shelf/demo.py --output build/demo
 
-test: lint types pytest
+test: lint types pytest blenders
 
 pytest: $(VENV)/.test
 	$(PY) -m pytest
+
+blenders: $(LTS:%=blender-%)
+
+$(LTS:%=blender-%): blender-%: $(VENV)/blender-%/.ready
+	@echo "tests/blender in Blender $*"
+	LD_LIBRARY_PATH=$(CURDIR)/$(<D)/system-libraries:$$LD_LIBRARY_PATH $(<D)/bin/python -m pytest tests/blender
 
 lint: $(VENV)/.test
 	$(BIN)/ruff check .
@@ -55,11 +65,8 @@ gui: $(VENV)/.demo
 	$(PY) tools/gui.py --blender "$(BLENDER)"
 
 # Written by the oldest Blender supported, so that every later one opens it.
-blend: LTS := build/blender-4.2
-blend:
-	$(PYTHON) -m venv $(LTS)
-	$(LTS)/bin/python -m pip install --quiet --disable-pip-version-check "bpy>=4.2,<4.3"
-	$(LTS)/bin/python examples/light_shelf/make_blend.py
+blend: $(VENV)/blender-4.2/.ready
+	LD_LIBRARY_PATH=$(CURDIR)/$(<D)/system-libraries:$$LD_LIBRARY_PATH $(<D)/bin/python examples/light_shelf/make_blend.py
 
 benchmark: $(VENV)/.benchmark
 	$(PY) benchmarks/time_and_error.py --docs
@@ -77,4 +84,10 @@ $(PY):
 $(VENV)/.demo $(VENV)/.test $(VENV)/.benchmark: $(VENV)/.%: pyproject.toml | $(PY)
 	$(PY) -m pip install --quiet --disable-pip-version-check -e ".[$*]"
 	$(PY) tools/system_libraries.py
+	@touch $@
+
+$(VENV)/blender-%/.ready: pyproject.toml | $(PY)
+	$(PYTHON) -m venv $(@D)
+	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check "bpy~=$*.0" -e ".[blender-test]"
+	$(@D)/bin/python tools/system_libraries.py
 	@touch $@
