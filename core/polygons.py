@@ -117,6 +117,56 @@ def simplify(loop, tolerance: float) -> np.ndarray:
     return p
 
 
+def without_flat_corners(polygons) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Convex polygons without corners that repeat or lie on the line between their neighbours.
+
+    Parameters
+    ----------
+    polygons : (m, v, 3) array of float
+
+    Returns
+    -------
+    list of ((k,) int, (k, w, 3) float)
+        Which ones, and their corners, by the number of these.
+    """
+    p = np.asarray(polygons, float)
+    found, left = [], np.arange(len(p))
+    for rounding in (_ROUNDING, 0.0):  # slivers may be as thin as that
+        lost = []
+        near = rounding * np.ptp(p, axis=1).max(axis=1)
+        apart = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2) > near[:, None]
+        for rows, loops in _with_corners(p, apart):
+            before, after = loops - np.roll(loops, 1, axis=1), np.roll(loops, -1, axis=1) - loops
+            height = np.linalg.norm(cross(before, after), axis=2)
+            bent = height > near[rows, None] * np.linalg.norm(before + after, axis=2)
+            bent |= np.einsum("mvc,mvc->mv", before, after) < 0
+            for some, fewer in _with_corners(loops, bent):
+                mine = rows[some]
+                same = np.abs(areas(fewer) - areas(p[mine])) <= _SAME_AREA * areas(p[mine])
+                same |= rounding == 0
+                found.append((left[mine[same]], fewer[same]))
+                lost.append(mine[~same])
+        left = left[np.concatenate([np.zeros(0, np.int64), *lost])]
+        p = np.asarray(polygons, float)[left]
+    return [(rows, loops) for rows, loops in found if len(rows)]
+
+
+_ROUNDING = 1e-12
+"""Over a polygon's size: what is nearer than this, is one."""
+
+_SAME_AREA = 1e-6
+
+
+def _with_corners(polygons: np.ndarray, kept: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Polygons ``(m, v, 3)`` with some of their corners ``(m, v)``, by the number of these."""
+    count = kept.sum(axis=1)
+    return [
+        (rows, polygons[rows][kept[rows]].reshape(len(rows), n, 3))
+        for n in np.unique(count).tolist()
+        for rows in [np.flatnonzero(count == n)]
+    ]
+
+
 def crosses_itself(loop) -> bool:
     """Whether two edges of a closed 2-D loop ``(v, 2)`` cross properly (touching is allowed)."""
     p = np.asarray(loop, float)
@@ -231,6 +281,10 @@ def convex_parts(loop, tolerance: float) -> list[np.ndarray]:
     list of (k, 2) float arrays, counter-clockwise
     """
     p = np.asarray(loop, float)
+    # where corners lie closer together than the tolerance, a bend inwards would count as none
+    apart = p[np.linalg.norm(p - np.roll(p, 1, axis=0), axis=1) > tolerance]
+    if abs(_signed_area(apart) - _signed_area(p)) <= _SAME_AREA * abs(_signed_area(p)):
+        p = apart
     if is_convex(p, tolerance):
         return [p]
     parts = [list(t) for t in triangulate(p)]
@@ -450,6 +504,11 @@ def _boundary_moments(x, y, across, up, begin, end) -> np.ndarray:
             (twice * (2 * y + middle * up)).sum(axis=0) / 6,
         ]
     )
+
+
+def _signed_area(loop: np.ndarray) -> float:
+    x, y = (loop - loop[:1]).T if len(loop) else np.zeros((2, 0))
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def _cross(a, b):

@@ -171,8 +171,9 @@ def _flat_pieces(points: np.ndarray, unit: np.ndarray):
             nearest = int(np.argmin(distance))
             if distance[nearest] <= 1e-6 * np.ptp(points, axis=0).max():
                 part[i] = points[nearest]
-    pieces, counts = polygons.pad(lifted)
-    return pieces, counts, np.zeros(len(lifted), np.int64), {}
+    cleaned = [polygons.without_flat_corners(part[None])[0][1][0] for part in lifted if len(part) > 2]
+    pieces, counts = polygons.pad(cleaned)
+    return pieces, counts, np.zeros(len(cleaned), np.int64), {}
 
 
 def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
@@ -203,9 +204,12 @@ def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
         edge = np.roll(corners, -1, axis=1) - corners
         turn = np.einsum("fvc,fc->fv", polygons.cross(edge, np.roll(edge, -1, axis=1)), unit)
         convex = flat & (turn > -1e-9 * size[:, None] ** 2).all(axis=1) & (length < 5 or _turns_once(edge, unit))
-        pieces.append(corners[convex])
-        counts.append(np.full(int(convex.sum()), length))
-        source.append(rows[convex])
+        # between corners that lie together a bend inwards would not show
+        convex &= (np.linalg.norm(edge, axis=2) > 1e-8 * size[:, None]).all(axis=1)
+        for some, loops in polygons.without_flat_corners(corners[convex]):
+            pieces.append(loops)
+            counts.append(np.full(len(some), loops.shape[1]))
+            source.append(rows[convex][some])
         bent.append(rows[~flat])
         for row, polygon, normal in zip(rows[~convex], corners[~convex], unit[~convex], strict=True):
             loop = (polygon - polygon[0]) @ polygons.plane_basis(normal).T

@@ -278,3 +278,36 @@ def test_moments_of_what_half_planes_leave_of_polygons(count):
     ]
     got = polygons.convex_moments(corners.transpose(2, 1, 0), lines.transpose(2, 1, 0))
     np.testing.assert_allclose(got, exact, atol=1e-12)
+
+
+ROOT = np.array([[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]], float)
+
+
+@pytest.mark.parametrize(
+    "extra",
+    [
+        [[0, 0, 0]],
+        [[1, 0, 0]],
+        [[1, 0, 0], [2, 0, 0], [2, 0, 0]],
+        [[0, 0, 0], [0, 0, 0]],
+        [[1e-15, 0, 0], [3, 1e-15, 0]],
+    ],
+)
+@pytest.mark.parametrize("roll", range(4))
+def test_corners_that_are_none_are_dropped(extra, roll):
+    loop = np.roll(np.concatenate([ROOT[:1], np.array(extra, float), ROOT[1:]]), roll, axis=0)
+    ((rows, found),) = polygons.without_flat_corners([loop, loop + 7])
+    assert rows.tolist() == [0, 1] and found.shape == (2, 4, 3)
+    np.testing.assert_allclose(sorted(map(tuple, found[0])), sorted(map(tuple, ROOT)), atol=1e-14)
+    np.testing.assert_allclose(polygons.newell_normal(found), [[0, 0, 24]] * 2)
+
+
+@pytest.mark.parametrize("width", [1e-6, 1e-12, 1e-14])
+def test_slivers_keep_their_corners(width):
+    loop = np.array([[0, 0, 0], [0.5, 0, 0], [1, 0, 0], [1, width, 0], [0, width, 0]])
+    found = polygons.without_flat_corners([loop, ROOT[[0, 0, 1, 2, 3]]])
+    by_row = {int(row): p for rows, some in found for row, p in zip(rows, some, strict=True)}
+    assert polygons.areas(by_row[0]) == pytest.approx(width, rel=1e-6)
+    assert polygons.areas(by_row[1]) == pytest.approx(12)
+    (part,) = polygons.convex_parts(loop[:, :2], 1e-9)
+    assert flat_area(part) == pytest.approx(width)

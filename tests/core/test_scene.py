@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from builders import BLACK, box_polygons
 
+import luzespecular as luz
 from luzespecular import polygons
 from luzespecular.errors import SceneError
 from luzespecular.scene import Scene
@@ -195,3 +196,43 @@ def test_size_does_not_matter(scale):
     assert area_of(surface) == pytest.approx(11 * scale**2, rel=1e-12)
     with pytest.raises(SceneError, match="has no area"):
         Scene().add("line", np.array([[0, 0, 0], [1, 0, 0], [2, 1e-15, 0]]) * scale, BLACK)
+
+
+L_WIDE = [[0, 0, 0], [4, 0, 0], [4, 2, 0], [2, 2, 0], [2, 4, 0], [0, 4, 0]]
+
+
+@pytest.mark.parametrize(
+    ("polygon", "area"),
+    [
+        ([[0, 0, 0], [1, 0, 0], [2, 0, 0], [4, 0, 0], [4, 4, 0], [3, 4, 0], [0, 4, 0], [0, 1.7, 0]], 16),
+        ([[0, 0, 0], [4, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], 16),
+        ([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [0, 0, 0]], 16),
+        ([*L_WIDE[:4], [2, 2, 0], *L_WIDE[4:5], [1, 4, 0], *L_WIDE[5:]], 12),
+        ([*L_WIDE[:4], [2 + 1e-11, 2 + 1e-11, 0], *L_WIDE[4:]], 12),
+        ([*L_WIDE[:4], [2, 2 + 1e-10, 0], *L_WIDE[4:]], 12),
+    ],
+    ids=[
+        "straight corners",
+        "a corner twice",
+        "closed by its first",
+        "L, corner twice",
+        "L, corners near",
+        "L, nearer",
+    ],
+)
+@pytest.mark.parametrize("mesh", [False, True])
+def test_corners_that_repeat_or_lie_on_edges_count_for_nothing(polygon, area, mesh):
+    scene = luz.Scene()
+    surface = scene.add(
+        "a",
+        np.array(polygon, float),
+        luz.Material(diffuse_reflectance=0.5),
+        faces=[range(len(polygon))] if mesh else None,
+    )
+    for piece, count in zip(surface.pieces, surface.counts, strict=True):
+        assert polygons.is_convex(piece[:count, :2], 1e-9 * 4)
+        assert polygons.areas(piece) > 1e-9
+    assert polygons.areas(surface.pieces).sum() == pytest.approx(area, rel=1e-9)
+    light = luz.Daylight(sky=luz.UniformSky(1000.0))
+    result = luz.prepare(scene, bands=8, max_area=np.inf).solve(light)
+    np.testing.assert_allclose(result.illuminance, 1000 * np.pi, rtol=1e-6)
