@@ -94,10 +94,10 @@ def lumen_balance(result: Result) -> Balance:
 def _cut_sky(result: Result) -> float:
     """Lumens of sky and ground light in the cut chains, as if these ended in the mean luminance of the open parcels."""
     transfer = result.transfer
-    area = transfer.geometry.fracture.element_areas
+    kept = transfer.geometry.areas_kept  # what mirrors pass on is cut where it lands
     if not transfer.truncated.any() or not result.sky.any():
         return 0.0
     weight = transfer.sky_direct.sum(axis=0)
     total = float(weight.sum())
     mean = float(weight @ result.sky) / total if total else 0.0
-    return float(np.pi * mean * (area @ transfer.on_elements(transfer.truncated)))
+    return float(np.pi * mean * (kept @ transfer.on_elements(transfer.truncated)))

@@ -209,3 +209,12 @@ def test_a_glass_roof_takes_its_share():
     inside = sum(flux(result, name) for name in ("floor", "south", "north", "west", "east"))
     assert inside == pytest.approx(0.6 * math.pi * 1000, rel=0.01)
     assert np.isfinite(total(result.balance))
+
+
+def test_sky_light_that_is_cut_counts_where_it_would_land():
+    """Down a pipe of mirrors, all of what comes in lands or is cut; what mirrors only pass on is not counted."""
+    polygons = {name: polygon for name, polygon in box_polygons((0.5, 0.5, 2.5)).items() if name != "ceiling"}
+    scene = scene_of(polygons, luz.Material(specular_reflectance=0.95), floor=BLACK)
+    balance = prepare_coarse(scene, elements=20, bands=30, specular_cutoff=0.5).solve(UNIFORM).balance
+    entering = 1000 * math.pi * 0.25
+    assert entering < sum(balance.absorbed.values()) + balance.truncated < 1.2 * entering
