@@ -29,7 +29,8 @@ help:
 	@echo "make zip        build and validate the Blender extension (dist/)"
 	@echo "make gui        drive a real Blender window: make gui BLENDER=/path/to/blender (pictures in build/gui)"
 	@echo "make blend      write examples/light_shelf/light_shelf.blend again"
-	@echo "make benchmark  run time and error of all benchmark scenes (docs/time-and-error.md), some 10 minutes"
+	@echo "make benchmark  performance (docs/performance.md), then time and error of all scenes (docs/time-and-error.md):"
+	@echo "                some 20 minutes; MINUTES=5 for each of the two instead of 10"
 	@echo "make clean      remove .venv, build and dist"
 
 demo: $(VENV)/.demo
@@ -68,8 +69,10 @@ gui: $(VENV)/.demo
 blend: $(VENV)/blender-4.2/.ready
 	LD_LIBRARY_PATH=$(CURDIR)/$(<D)/system-libraries:$$LD_LIBRARY_PATH $(<D)/bin/python examples/light_shelf/make_blend.py
 
-benchmark: $(VENV)/.benchmark
-	$(PY) benchmarks/time_and_error.py --docs
+benchmark: MINUTES ?= 10
+benchmark: $(VENV)/.benchmark $(VENV)/.engines
+	$(PY) benchmarks/performance.py --docs --minutes $(MINUTES)
+	$(PY) benchmarks/time_and_error.py --docs --minutes $(MINUTES)
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info
@@ -81,7 +84,7 @@ $(PY):
 		"install its venv module (Debian, Ubuntu: apt-get install python3.11-venv) and try again."; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/.demo $(VENV)/.test $(VENV)/.benchmark: $(VENV)/.%: pyproject.toml | $(PY)
+$(VENV)/.demo $(VENV)/.test $(VENV)/.benchmark $(VENV)/.engines: $(VENV)/.%: pyproject.toml | $(PY)
 	$(PY) -m pip install --quiet --disable-pip-version-check -e ".[$*]"
 	$(PY) tools/system_libraries.py
 	@touch $@

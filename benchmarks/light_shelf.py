@@ -8,29 +8,19 @@ surfaces.
 """
 
 import argparse
-import importlib.util
 import json
 import platform
-import resource
 import statistics
-import sys
 import time
-from pathlib import Path
 
+import apart
 import numpy as np
+from apart import ROOT
+from rooms import light_shelf_room
 
 import luzespecular as luz
 
-ROOT = Path(__file__).resolve().parents[1]
 SKIES = {"overcast": ("overcast", False), "clear_12": ("clear", False), "sun_12": (None, True)}
-
-
-def light_shelf_room():
-    spec = importlib.util.spec_from_file_location("light_shelf_room", ROOT / "examples" / "light_shelf" / "room.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 def errors(result, reference, light):
@@ -80,8 +70,7 @@ def main():
             worst = max(means, key=lambda k: abs(means[k]))
             print(f"{head} | {name} | {means[worst]:+.2f} ({worst}) | {rms:.2f} |")
             head = "| | | |"
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
-    print(f"\npeak memory of the whole run: {peak:.2f} GB")
+    print(f"\npeak memory of the whole run: {apart.peak_gb():.2f} GB")
 
 
 if __name__ == "__main__":

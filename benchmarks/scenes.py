@@ -27,6 +27,9 @@ NAMES = (
     "luminous_ceiling",
     "furnished",
 )
+OTHERS = ("seed_room_noon",)
+"""Scenes of other benchmarks than `time_and_error`."""
+
 BELOW = 0.01
 """Places below this share of a measure's largest value are compared with that share, not with themselves."""
 
