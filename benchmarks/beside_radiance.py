@@ -29,13 +29,13 @@ COMMON = ("-av", "0", "0", "0", "-dc", "1", "-dt", "0", "-lr", "-12", "-lw", "1e
 SETTINGS = (
     {"cache": False, "ab": 2, "ad": 16, "as": 0},
     {"cache": False, "ab": 3, "ad": 64, "as": 32},
-    {"cache": False, "ab": 5, "ad": 256, "as": 128},
-    {"cache": False, "ab": 6, "ad": 512, "as": 256},
     {"cache": True, "ab": 5, "ad": 512, "as": 128, "aa": 0.2, "ar": 64},
+    {"cache": False, "ab": 5, "ad": 256, "as": 128},
     {"cache": True, "ab": 6, "ad": 1024, "as": 256, "aa": 0.15, "ar": 128},
+    {"cache": False, "ab": 6, "ad": 512, "as": 256},
     {"cache": True, "ab": 7, "ad": 2048, "as": 512, "aa": 0.1, "ar": 256},
 )
-
+"""Roughly from the quickest to the slowest."""
 
 QUICK = (
     {"cache": False, "ab": 1, "ad": 8, "as": 0},

@@ -41,9 +41,9 @@ REUSES = (
     "another hour, quick",
     "another sky",
     "another reflectance",
-    "a year",
     "loaded",
     "saved",
+    "a year",
 )
 USUAL_FACE = 0.005
 """Largest face of the light-shelf room [m²], as in the paper."""
@@ -61,6 +61,7 @@ def faces_by_solver(bands: int, max_area: float, threads: int, repeats: int, mos
     given, kept = scene.solver_scene(), []
 
     def run() -> None:
+        kept.clear()
         kept[:] = [luz.prepare(given, bands=bands, max_area=max_area, threads=threads).solve(measure.light)]
 
     seconds, runs = apart.medians({"all": run}, repeats, most_seconds)

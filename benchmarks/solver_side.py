@@ -28,7 +28,7 @@ CONDITIONS = ("clear", "clear", "partly cloudy", "overcast", "partly cloudy")
 REPEATS = 5
 
 GROWTH = {
-    "faces": (0.04, 0.02, 0.01, 0.005, 0.0025),
+    "faces": (0.04, 0.02, 0.01, 0.005, 0.0025, 0.00125),
     "bands": (20, 30, 40, 60, 90),
     "planes": (0, 1, 2, 4, 8, 16),
     "mirrors": (1, 2, 4, 8),
@@ -55,6 +55,7 @@ def first_use(bands: int, max_area: float, threads: int, repeats: int, most_seco
     later, runs = apart.medians({"later": once}, repeats, most_seconds)
     return {
         "import": import_seconds(repeats),
+        "imports": repeats,
         "first": first,
         "seconds": later["later"],
         "runs": runs,
@@ -75,25 +76,25 @@ def import_seconds(repeats: int) -> float:
 def whole_run(bands: int, max_area: float, threads: int, repeats: int, most_seconds: float, transfer: str) -> dict:
     """Arrays in → lux out with its stages, medians; the transfer is kept for other tasks."""
     room, kept = rooms.light_shelf_room(), []
+    stages: dict[str, list[float]] = {}
 
     def prepare() -> None:
-        kept.append([luz.prepare(room.scene("S1"), bands=bands, max_area=max_area, threads=threads)])
+        kept.clear()  # no more than one is held
+        kept.append(luz.prepare(room.scene("S1"), bands=bands, max_area=max_area, threads=threads))
 
     def solve() -> None:
-        kept[-1].append(kept[-1][0].solve(room.daylight(12.0)))
+        kept.append(kept[0].solve(room.daylight(12.0)))
+        for stage in kept[1].stages:
+            if not stage.skipped:
+                stages.setdefault(stage.name, []).append(stage.seconds)
 
     seconds, runs = apart.medians({"prepare": prepare, "solve": solve}, repeats, most_seconds)
     peak = apart.peak_gb()
-    prepared, result = kept[-1]
-    stages: dict[str, list[float]] = {}
-    for _, each in kept:
-        for stage in each.stages:
-            if not stage.skipped:
-                stages.setdefault(stage.name, []).append(stage.seconds)
+    prepared, result = kept
     prepared.save(transfer)
     return {
         **seconds,
-        "seconds": statistics.median(sum(s.seconds for s in each.stages) for _, each in kept),
+        "seconds": seconds["prepare"] + seconds["solve"],
         "runs": runs,
         "peak_gb": peak,
         "faces": len(result.areas),
@@ -162,7 +163,8 @@ def growth(kind: str, value: float, bands: int, max_area: float, threads: int, r
     kept = []
 
     def prepare() -> None:
-        kept[:] = [luz.prepare(scene, **options)]
+        kept.clear()
+        kept.append(luz.prepare(scene, **options))
 
     seconds, runs = apart.medians(
         {"prepare": prepare, "solve": lambda: kept.append(kept[0].solve(room.daylight(12.0)))}, repeats, most_seconds
@@ -196,7 +198,7 @@ def slope(x: list[float], y: list[float]) -> float:
 
 
 def skip(name: str, bands: int, max_area: float, threads: int, repeats: int, most_seconds: float) -> dict:
-    """Seconds with one skip and without it, in turn, and the largest relative change of illuminance."""
+    """Seconds of all threads with one skip and without it, in turn, and the largest relative change of illuminance."""
     options = {"bands": bands, "max_area": max_area, "threads": threads}
     with_it, without_it, note = SKIPS[name](options)
     found: dict[str, np.ndarray] = {}
@@ -210,7 +212,7 @@ def skip(name: str, bands: int, max_area: float, threads: int, repeats: int, mos
     works = {"with": work("with", with_it), "without": work("without", without_it)}
     for run in works.values():
         run()  # the first use of things
-    seconds, runs = apart.medians(works, repeats, most_seconds)
+    seconds, runs = apart.medians(works, repeats, most_seconds, time.process_time)
     one, other = found["with"], found["without"]
     change = np.abs(one - other) / np.maximum(np.abs(other), 1e-3 * np.abs(other).mean())
     return {
