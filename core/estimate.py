@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .convex import ConvexRoom
 from .gather import Targets, gather
 from .geometry import Geometry, sight_of
 from .globe import Globe
@@ -20,9 +21,13 @@ from .specular import ChainLimits
 
 _SHARE = 0.04
 _FEWEST, _MOST = 4, 400
+_TOGETHER = 200
 
 OF_DIFFERENCE = 1.4
 """What about 95 of 100 errors are below, over the root mean square difference of the two globes."""
+
+OF_MERGING = 0.35
+"""The same over what patches twice as wide change: errors fall with the square of their width."""
 
 OF_DOUBT = 0.5
 """The same for interpolation, over the surprise of the nodes around."""
@@ -39,18 +44,21 @@ class Trial:
     ----------
     nodes : (k,) int
     targets : Targets
-    patches : (k, p) float32
-    sky : (k, c) float32
+        With `Geometry.cells` as patches.
+    cells : (k, c) float32
+    sky : (k, s) float32
         Straight and by mirrors.
     """
 
     nodes: np.ndarray
     targets: Targets
-    patches: np.ndarray
+    cells: np.ndarray
     sky: np.ndarray
 
 
-def make_trial(geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: int) -> Trial:
+def make_trial(
+    geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: int, unhidden: ConvexRoom | None
+) -> Trial:
     """Look once more from some nodes of each sheet.
 
     Parameters
@@ -59,29 +67,34 @@ def make_trial(geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: i
     nodes : Nodes
     limits : ChainLimits
     threads : int
+    unhidden : ConvexRoom or None
+        In cells: the globe has no part in what receivers see, so that it errs nowhere.
 
     Returns
     -------
     Trial
     """
     bands = max(2, round(geometry.targets.globe.bands / math.sqrt(2)))
-    targets = Targets.of(geometry.planes, geometry.targets.patches, Globe.cut_at_horizon(bands))
+    targets = Targets.of(geometry.planes, geometry.cells.patches, Globe.cut_at_horizon(bands))
     coarse = replace(geometry, targets=targets)
     some = _sample(nodes.sheet)
-    patches = np.zeros((len(some), targets.patches.count), np.float32)
+    cells = np.zeros((len(some), targets.patches.count), np.float32)
     sky = np.zeros((len(some), targets.columns), np.float32)
 
     def work(chunk, checkpoint) -> None:
         rows = some[chunk]
         normal = geometry.element_normals[nodes.element[rows[0]]]
+        if unhidden is not None:
+            cells[chunk] = unhidden.factors(nodes.points[rows], normal)[:, :-1]
+            return
         sight = sight_of(coarse, limits, normal, float(normal @ nodes.points[rows[0]]))
         found = gather(sight, nodes.points[rows], targets, checkpoint)
-        patches[chunk] = found.patches
+        cells[chunk] = found.patches
         sky[chunk] = found.sky
 
-    chunks = chunks_of_receivers(nodes.points[some], nodes.sheet[some], geometry.planes, 200)
+    chunks = chunks_of_receivers(nodes.points[some], nodes.sheet[some], geometry.planes, _TOGETHER)
     run_parallel(work, chunks, threads, lambda done: None)
-    return Trial(some, targets, patches, sky)
+    return Trial(some, targets, cells, sky)
 
 
 def _sample(sheet: np.ndarray) -> np.ndarray:
@@ -97,7 +110,9 @@ def _sample(sheet: np.ndarray) -> np.ndarray:
     return np.sort(np.concatenate(picked)) if picked else np.zeros(0, np.int64)
 
 
-def relative_errors(trial: Trial, sheet: np.ndarray, ours: np.ndarray, coarser: np.ndarray, sheets: int) -> np.ndarray:
+def relative_errors(
+    trial: Trial, sheet: np.ndarray, ours: np.ndarray, coarser: np.ndarray, merging: np.ndarray, sheets: int
+) -> np.ndarray:
     """(sheets,) float: error of each sheet's nodes over their illuminance.
 
     Parameters
@@ -106,15 +121,17 @@ def relative_errors(trial: Trial, sheet: np.ndarray, ours: np.ndarray, coarser: 
     sheet : (m,) int, of all nodes
     ours, coarser : (k,) float
         Illuminance of the trial's nodes, by both globes [lx].
+    merging : (k,) float
+        What they get more where neighbouring patches do not share their exitance [lx].
     sheets : int
     """
     if not len(ours):
         return np.full(sheets, LEAST)
     floor = 1e-3 * max(float(ours.mean()), 1e-300)
-    squared = ((ours - coarser) / np.maximum(ours, floor)) ** 2
+    scale = np.maximum(ours, floor)
+    squared = (OF_DIFFERENCE * (ours - coarser) / scale) ** 2 + (OF_MERGING * merging / scale) ** 2
     mine = sheet[trial.nodes]
     count = np.bincount(mine, minlength=sheets)
     known = np.bincount(mine, weights=squared, minlength=sheets)
-    mean = squared.mean()
     # few samples of a sheet tell little: they are weighed against all
-    return OF_DIFFERENCE * np.sqrt((known + 2 * mean) / (count + 2))
+    return np.sqrt((known + 2 * squared.mean()) / (count + 2))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from .convex import ConvexRoom
 from .gather import Gathered, gather
 from .geometry import Geometry, sight_of
 from .nodes import Nodes, settled
@@ -18,6 +19,9 @@ _CHUNK_CELLS = 500_000
 
 _ROOM = 1.5
 """Room for rows, over those known to be needed."""
+
+_UNHIDDEN_ROWS = 200
+"""Receivers of one plane that are looked from together where nothing stands in the way."""
 
 _GROUPS = 32
 _ROWS = 256
@@ -47,7 +51,7 @@ class Rows:
         specular = (count, targets.columns) if geometry.outlines.any_specular else (0, targets.columns)
         return cls(
             np.empty((count, targets.patches.count), np.float32),
-            np.empty((count, targets.columns), np.float32),
+            np.zeros((count, targets.columns), np.float32),
             np.zeros(specular, np.float32),
             np.zeros(count, bool),
             np.zeros(count, np.float32),
@@ -83,17 +87,21 @@ class Rows:
 
 def gather_nodes(
     geometry: Geometry,
+    lattice: Nodes,
     limits: ChainLimits,
     times: float,
     threads: int,
     report: Callable[[float], None],
     allow: Callable[[int], None] = lambda rows: None,
-) -> tuple[Nodes, Nodes, Rows, np.ndarray]:
+    convex: ConvexRoom | None = None,
+) -> tuple[Nodes, Rows, np.ndarray]:
     """Form factors of all nodes.
 
     Parameters
     ----------
     geometry : Geometry
+    lattice : Nodes
+        Those that every scene begins with.
     limits : ChainLimits
     times : float
         How many times finer than usual.
@@ -101,16 +109,17 @@ def gather_nodes(
     report : callable(fraction)
     allow : callable(rows)
         Called before room is taken for so many nodes; may raise where that is too much.
+    convex : ConvexRoom, optional
+        Where nothing stands in the way.
 
     Returns
     -------
-    lattice, nodes : Nodes
-        Those that every scene begins with; all.
+    nodes : Nodes
+        All.
     rows : Rows
     unsure : (e,) float
         See `Nodes.unsure`.
     """
-    lattice = Nodes.of(geometry.fracture, geometry.lattices)
     allow(int(_ROOM * len(lattice.points)))
     room = Rows.empty(int(_ROOM * len(lattice.points)), geometry)
     sights: dict[int, GroupSight] = {}
@@ -125,14 +134,21 @@ def gather_nodes(
             room = room.kept(first, int(_ROOM * count), geometry)
         members = np.arange(first, count)
         begun, share = done, (1.0 - done) * (0.6 if first == 0 else 0.7)
-        _gather_some(geometry, nodes, members, room, sights, limits, threads, lambda part: report(begun + share * part))
+
+        def partly(part: float) -> None:
+            report(begun + share * part)
+
+        if convex is None:
+            _gather_some(geometry, nodes, members, room, sights, limits, threads, partly)
+        else:
+            _gather_unhidden(geometry, nodes, members, room, convex, threads, partly)
         done = begun + share
         light = light.followed(Light.of(geometry, room, members))
         return light.kinds()
 
     nodes = settled(lattice, geometry.fracture, evaluate, times)
     report(1.0)
-    return lattice, nodes, room.first(len(nodes.points)), nodes.unsure(light.kinds(), geometry.fracture)
+    return nodes, room.first(len(nodes.points)), nodes.unsure(light.kinds(), geometry.fracture)
 
 
 def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, limits, threads: int, report) -> None:
@@ -153,6 +169,20 @@ def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, 
         rows.put(chunk, gather(sight, nodes.points[chunk], geometry.targets, checkpoint))
 
     run_parallel(work, chunks, threads, report)
+
+
+def _gather_unhidden(
+    geometry: Geometry, nodes: Nodes, members, rows: Rows, convex: ConvexRoom, threads, report
+) -> None:
+    """The same where nothing stands in the way."""
+
+    def work(chunk: np.ndarray, checkpoint) -> None:
+        checkpoint()
+        factors = convex.factors(nodes.points[chunk], geometry.element_normals[nodes.element[chunk[0]]])
+        rows.form_factors[chunk] = factors[:, :-1]
+
+    chunks = chunks_of_receivers(nodes.points[members], nodes.sheet[members], geometry.planes, _UNHIDDEN_ROWS)
+    run_parallel(work, [members[chunk] for chunk in chunks], threads, report)
 
 
 @dataclass(frozen=True, eq=False)

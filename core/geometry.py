@@ -16,10 +16,14 @@ from .layout import Layout
 from .patches import make_patches
 from .planes import Planes
 from .scene import Scene
+from .solids import find_solids
 from .specular import ChainLimits, GroupSight, Outlines
 
 PATCHES = 1_000
 """Patches that exitance is resolved in, about; runs of cells get more where light is uneven."""
+
+_MOST_CELLS = 10_000
+"""Parts of patches that free points look at, about, in scenes of more elements."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +103,28 @@ class Geometry:
         """(p,) float [m²]."""
         return self.patch_sums(self.fracture.element_areas)
 
+    @cached_property
+    def cells(self) -> Targets:
+        """What beams from free points end on: parts of patches, as small as elements where these are not too many."""
+        cuts, whole = self.fracture, self.targets.patches.of_element >= 0
+        count = min(np.count_nonzero(whole), _MOST_CELLS)
+        cells = make_patches(
+            self.planes, cuts.elements, cuts.element_sheet, whole, cuts.element_areas, count, self.lattices
+        )
+        return replace(self.targets, patches=cells)
+
+    def cell_means(self, values: np.ndarray) -> np.ndarray:
+        """(c,) float: area-weighted means over `cells` of values ``(e,)``."""
+        cell, area = self.cells.patches.of_element, self.fracture.element_areas
+        mine = cell >= 0
+        count = self.cells.patches.count
+        sums = np.bincount(cell[mine], weights=(area * values)[mine], minlength=count)
+        return sums / np.bincount(cell[mine], weights=area[mine], minlength=count)
+
+    def from_patches(self, values: np.ndarray) -> np.ndarray:
+        """(e,) float: values of patches ``(p,)`` on their elements, 0 on those of none."""
+        return np.append(values, 0.0)[self.targets.patches.of_element]
+
     def with_materials(self, scene: Scene) -> Geometry:
         """The same shapes with the materials of a scene of the same surfaces."""
         materials = [surface.material for surface in scene.surfaces.values()]
@@ -147,6 +173,7 @@ def make_geometry(
         materials=[surfaces[k].material for k in outline_surface],
         two_sided=two_sided[outline_surface],
         tolerance=max(1e-10 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
+        solids=find_solids(planes, np.array([not s.material.is_transparent for s in surfaces])),
     )
     return Geometry(
         planes,

@@ -283,31 +283,26 @@ class Globe:
         cosine = self.directions @ n
         reach = np.hypot(*self.half_widths.T) * 1.3
         parcels = np.flatnonzero(cosine > -reach)
-        cut = np.flatnonzero(np.abs(cosine[parcels]) <= reach[parcels])
+        whole = self.whole
+        cut = np.abs(cosine[parcels]) <= reach[parcels]
+        low = np.flatnonzero(cut)
         directions = self.directions[parcels].copy()
         weights = self.first_moments[parcels] @ n / np.pi
         half_widths = self.half_widths[parcels].copy()
-        if len(cut):
-            parts = self.subdirections(parcels[cut], _HORIZON_SUBDIVISION)
-            lit = np.maximum(parts @ n, 0.0)
-            part = self.solid_angles[parcels[cut]] / _HORIZON_SUBDIVISION**2
-            weights[cut] = lit.sum(axis=1) * part / np.pi
-            seen = (lit > 0).sum(axis=1)
-            centre = np.einsum("ms,msc->mc", (lit > 0).astype(float), parts)
+        distance = whole.reach[parcels]
+        if len(low):
+            weight, seen, centre = self._above(parcels[low], n)
             ok = seen > 0
-            directions[cut[ok]] = centre[ok] / np.linalg.norm(centre[ok], axis=1, keepdims=True)
-            half_widths[cut] *= np.sqrt(np.maximum(seen, 1) / _HORIZON_SUBDIVISION**2)[:, None]
-            weights[cut[~ok]] = 0.0
-            free = np.ones(len(parcels), bool)
-            free[cut] = False
+            directions[low[ok]] = centre[ok] / np.linalg.norm(centre[ok], axis=1, keepdims=True)
+            half_widths[low] *= np.sqrt(np.maximum(seen, 1) / _HORIZON_SUBDIVISION**2)[:, None]
+            weights[low] = np.where(ok, weight, 0.0)
             # the whole parcels are exact, so the sampled ones must make up the rest of exactly 1
-            sampled = weights[cut].sum()
+            sampled = weights[low].sum()
             if sampled > 0:
-                weights[cut] *= (1.0 - weights[free].sum()) / sampled
-        odd = self.polar_rank(parcels) < POLAR_BANDS
-        odd[cut] = True
+                weights[low] *= (1.0 - weights[~cut].sum()) / sampled
+            chord = np.linalg.norm(self.corners[parcels[low]] - directions[low][:, None], axis=2).max(axis=1)
+            distance[low] = 2 * np.arcsin(0.5 * chord)
         keep = weights > 0
-        chord = np.linalg.norm(self.corners[parcels] - directions[:, None], axis=2).max(axis=1)
         return Hemisphere(
             normal=n,
             parcels=parcels[keep],
@@ -315,7 +310,41 @@ class Globe:
             weights=weights[keep] / weights[keep].sum(),
             half_widths=half_widths[keep],
             axes=self.axes[parcels[keep]],
-            odd=odd[keep],
-            reach=2 * np.arcsin(0.5 * chord[keep]),
+            odd=(whole.odd[parcels] | cut)[keep],
+            cut=cut[keep],
+            reach=distance[keep],
             globe=self,
         )
+
+    @cached_property
+    def whole(self) -> Hemisphere:
+        """All parcels, as a plane would see them that has no horizon and weighs nothing."""
+        chord = np.linalg.norm(self.corners - self.directions[:, None], axis=2).max(axis=1)
+        every = np.arange(self.count)
+        return Hemisphere(
+            normal=np.zeros(3),
+            parcels=every,
+            directions=self.directions,
+            weights=np.zeros(self.count),
+            half_widths=self.half_widths,
+            axes=self.axes,
+            odd=self.polar_rank(every) < POLAR_BANDS,
+            cut=np.ones(self.count, bool),
+            reach=2 * np.arcsin(0.5 * chord),
+            globe=self,
+        )
+
+    def _above(self, parcels, normal) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Cosine weight, parts and their sum of directions ``(m, 3)``, of what of parcels is above a horizon."""
+        step = (np.arange(_HORIZON_SUBDIVISION) + 0.5) / _HORIZON_SUBDIVISION
+        c0, c1 = (np.cos(self.polar_edges[self.band_of[parcels] + k])[:, None] for k in (0, 1))
+        up = c0 + (c1 - c0) * step
+        level = np.sqrt(np.maximum(1 - up**2, 0.0))
+        azimuth = self.azimuth[parcels][:, None] + (step - 0.5) * self.azimuth_width[parcels][:, None]
+        east, north = np.sin(azimuth), np.cos(azimuth)
+        lit = level[:, :, None] * (normal[0] * east + normal[1] * north)[:, None, :] + (normal[2] * up)[:, :, None]
+        seen = lit > 0
+        weight = np.where(seen, lit, 0.0).sum(axis=(1, 2)) * self.solid_angles[parcels] / seen[0].size / np.pi
+        across = (level[:, :, None] * seen).sum(axis=1)
+        centre = [(across * east).sum(axis=1), (across * north).sum(axis=1), (up * seen.sum(axis=2)).sum(axis=1)]
+        return weight, seen.sum(axis=(1, 2)), np.stack(centre, axis=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import polygons
+from .arrays import dots
 
 if TYPE_CHECKING:
     from .globe import Globe
@@ -38,6 +40,8 @@ class Hemisphere:
         No corner of the parcel is farther from the direction than this [rad].
     odd : (k,) bool
         Parcels that a rectangle stands for badly: cut by the horizon, or next to a pole.
+    cut : (k,) bool
+        Parcels that may reach below the horizon.
     globe : Globe
     """
 
@@ -49,14 +53,18 @@ class Hemisphere:
     axes: np.ndarray
     reach: np.ndarray
     odd: np.ndarray
+    cut: np.ndarray
     globe: Globe
 
     @cached_property
     def frames(self) -> np.ndarray:
         """(k, 3, 3) float: each direction and two unit vectors across it, right-handed."""
-        across = self.axes[:, 0] - np.einsum("kc,kc->k", self.axes[:, 0], self.directions)[:, None] * self.directions
-        across /= np.linalg.norm(across, axis=1, keepdims=True)
-        return np.stack([self.directions, across, polygons.cross(self.directions, across)], axis=1)
+        some = np.flatnonzero(self.cut)
+        if len(some) == len(self.cut):
+            return self._frames(some)
+        frames = self.globe.whole.frames.take(self.parcels, axis=0)
+        frames[some] = self._frames(some)
+        return frames
 
     @cached_property
     def shapes(self) -> Shapes:
@@ -64,38 +72,61 @@ class Hemisphere:
 
         The arcs between bands are chords, shifted to leave the areas right; next to the poles there are more of them.
         """
-        inner, outer, turn = self._sides
-        every = np.arange(len(turn))
-        near = self._chord(every, inner, turn)[:, ::-1]
-        corners, counts = self._cut(every, np.concatenate([self._chord(every, outer, turn), near], axis=1))
-        polar = np.flatnonzero(self.globe.polar_rank(self.parcels) < POLAR_BANDS)
-        if len(polar):
-            arc = self._flat(polar, outer[polar, None], turn[polar])
-            many, counts[polar] = self._cut(polar, np.concatenate([arc, near[polar]], axis=1))
-            corners = polygons.widen(corners, many.shape[1])
-            corners[polar] = many
-        return Shapes.of(corners, counts)
+        return self._all_shapes(lambda whole: whole.shapes, self._shapes)
 
     @cached_property
     def fine_shapes(self) -> tuple[Shapes, Shapes]:
         """The same within arcs: outlines as far as the inner arc's chord; what lies between the two, to take off."""
-        inner, outer, turn = self._sides
-        every = np.arange(len(turn))
-        arcs = [self._flat(every, angle[:, None], turn) for angle in (outer, inner)]
-        around = np.concatenate([arcs[0], arcs[1][:, [-1, 0]]], axis=1)
-        return Shapes.of(*self._cut(every, around)), Shapes.of(*self._cut(every, arcs[1]))
+        return (
+            self._all_shapes(lambda whole: whole.fine_shapes[0], self._outer_shapes),
+            self._all_shapes(lambda whole: whole.fine_shapes[1], self._inner_shapes),
+        )
 
-    @cached_property
-    def _sides(self):
-        """(k,), (k,) and (k, a) float: polar angles next to the pole and away from it, azimuths across."""
-        band = self.globe.band_of[self.parcels]
+    def _all_shapes(self, of: Callable[[Hemisphere], Shapes], find: Callable[[np.ndarray], Shapes]) -> Shapes:
+        """Those of whole parcels, which all hemispheres have alike; and of the others, found anew."""
+        some = np.flatnonzero(self.cut)
+        if len(some) == len(self.cut):
+            return find(some)
+        return of(self.globe.whole).take(self.parcels).replaced(some, find(some))
+
+    def _frames(self, some) -> np.ndarray:
+        axes, directions = self.axes[some, 0], self.directions[some]
+        across = axes - dots(axes, directions)[:, None] * directions
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        return np.stack([directions, across, polygons.cross(directions, across)], axis=1)
+
+    def _shapes(self, some) -> Shapes:
+        inner, outer, turn = self._sides(some)
+        near = self._chord(some, inner, turn)[:, ::-1]
+        corners, counts = self._above(some, np.concatenate([self._chord(some, outer, turn), near], axis=1))
+        polar = np.flatnonzero(self.globe.polar_rank(self.parcels[some]) < POLAR_BANDS)
+        if len(polar):
+            arc = self._flat(some[polar], outer[polar, None], turn[polar])
+            many, counts[polar] = self._above(some[polar], np.concatenate([arc, near[polar]], axis=1))
+            corners = polygons.widen(corners, many.shape[1])
+            corners[polar] = polygons.widen(many, corners.shape[1])
+        return Shapes.of(corners, counts)
+
+    def _outer_shapes(self, some) -> Shapes:
+        inner, outer, turn = self._sides(some)
+        ends = self._flat(some, inner[:, None], turn[:, [-1, 0]])
+        return Shapes.of(*self._above(some, np.concatenate([self._flat(some, outer[:, None], turn), ends], axis=1)))
+
+    def _inner_shapes(self, some) -> Shapes:
+        inner, _, turn = self._sides(some)
+        return Shapes.of(*self._above(some, self._flat(some, inner[:, None], turn)))
+
+    def _sides(self, some):
+        """(n,), (n,) and (n, a) float: polar angles next to the pole and away from it, azimuths across."""
+        parcels = self.parcels[some]
+        band = self.globe.band_of[parcels]
         southern = band >= self.globe.bands // 2
-        turn = self.globe.azimuth[self.parcels][:, None] + np.multiply.outer(
-            0.5 * self.globe.azimuth_width[self.parcels], np.linspace(-1, 1, _ARC + 1)
+        turn = self.globe.azimuth[parcels][:, None] + np.multiply.outer(
+            0.5 * self.globe.azimuth_width[parcels], np.linspace(-1, 1, _ARC + 1)
         )
         return self.globe.polar_edges[band + southern], self.globe.polar_edges[band + ~southern], turn
 
-    def _cut(self, index, corners) -> tuple[np.ndarray, np.ndarray]:
+    def _above(self, index, corners) -> tuple[np.ndarray, np.ndarray]:
         """Outlines ``(n, v, 2)`` on some of the tangent planes, turned counter-clockwise, of them what is above."""
         spatial = np.concatenate([corners, np.zeros((*corners.shape[:2], 1))], axis=2)
         clockwise = polygons.newell_normal(spatial)[:, 2] < 0
@@ -165,6 +196,18 @@ class Shapes:
         """Shapes from corners ``(k, v, 2)``."""
         corners = np.ascontiguousarray(np.moveaxis(corners, 0, 2).swapaxes(0, 1))
         return cls(corners, counts, polygons.convex_moments(corners, np.zeros((3, 0, len(counts)))).T)
+
+    def take(self, index) -> Shapes:
+        """Some of the shapes."""
+        return Shapes(self.corners.take(index, axis=2), self.counts.take(index), self.moments.take(index, axis=0))
+
+    def replaced(self, index, others: Shapes) -> Shapes:
+        """With others in some places."""
+        width = max(self.corners.shape[1], others.corners.shape[1])
+        corners, new = (polygons.widen(shape.corners.T, width).T for shape in (self, others))
+        counts, moments = self.counts.copy(), self.moments.copy()
+        corners[:, :, index], counts[index], moments[index] = new, others.counts, others.moments
+        return Shapes(np.ascontiguousarray(corners), counts, moments)
 
 
 def direction_of(polar, azimuth) -> np.ndarray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .grid import Grid
 from .layout import Layout
 from .planes import Planes
 from .profiles import Profile, profile_shares
@@ -56,6 +57,26 @@ class Patches:
     def columns(self) -> int:
         """What beams can end on: patches, and parts of them across narrow strips."""
         return self.count + sum(p.along * len(p.shares) for p in self.profiles)
+
+    def merged(self, grids: tuple[Grid, ...], element_sheet: np.ndarray) -> np.ndarray:
+        """(p,) int: groups of patches that lie beside each other, twice as wide as they are.
+
+        Parameters
+        ----------
+        grids : tuple of Grid
+            Runs of elements, whose patches are merged in fours; others in twos, as they are numbered in their sheet.
+        element_sheet : (e,) int
+        """
+        sheet = np.zeros(self.count, np.int64)
+        mine = self.of_element >= 0
+        sheet[self.of_element[mine]] = element_sheet[mine]
+        first = np.searchsorted(sheet, sheet) if (np.diff(sheet) >= 0).all() else np.zeros(self.count, np.int64)
+        key = np.stack([sheet, (np.arange(self.count) - first) // 2, np.full(self.count, -1)])
+        for grid in grids:
+            patch = self.of_element[grid.elements][::2].reshape(grid.rows, grid.columns)
+            line, column = (np.cumsum(np.diff(p, prepend=p[0]) != 0) // 2 for p in (patch[:, 0], patch[0]))
+            key[1:, patch] = np.broadcast_arrays(line[:, None], column)
+        return np.unique(key, axis=1, return_inverse=True)[1].reshape(-1)
 
     def folded(self, columns: np.ndarray) -> np.ndarray:
         """(r, p) float: form factors to patches from those to columns ``(r, c)``."""

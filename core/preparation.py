@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .convex import ConvexRoom
 from .errors import SceneError, TransferFileError
 from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
 from .fingerprint import Fingerprint
@@ -16,6 +17,7 @@ from .form_factors import Conservation, Exchange, gather_nodes, patch_means
 from .geometry import Geometry, make_geometry
 from .globe import Globe
 from .inspection import inspect, refuse
+from .nodes import Nodes
 from .options import Options, checked_memory, checked_scene, checked_threads
 from .planes import find_planes
 from .scene import Scene
@@ -209,20 +211,24 @@ def _prepared(
         geometry = make_geometry(scene, planes, globe, options.max_area, times, options.receivers)
     limits = ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines))
     with recorder.stage(LOOKING, 0.02):
-        lattice, nodes, gathered, unsure = gather_nodes(
+        lattice = Nodes.of(geometry.fracture, geometry.lattices)
+        convex = ConvexRoom.of(geometry, lattice)
+        nodes, gathered, unsure = gather_nodes(
             geometry,
+            lattice,
             limits,
             times,
             threads,
             lambda done: recorder.report(0.02 + 0.97 * done, LOOKING),
             lambda nodes: _check_memory(geometry, nodes, memory),
+            convex,
         )
         conservation = Conservation.of(geometry, nodes, gathered)
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
         exchange = Exchange(patch_factors, spread, conservation.missing)
     sees_out = bool(gathered.sky_direct.any() or gathered.sky_specular.any())
-    for name, why in needless(geometry, sees_out):
+    for name, why in needless(geometry, sees_out, convex is not None):
         recorder.skip(name, why)
     recorder.report(1.0, "prepared")
     specular_rows = np.flatnonzero(gathered.specular_rows)
@@ -246,6 +252,7 @@ def _prepared(
         lattice=lattice,
         unsure=unsure,
         conservation=conservation,
+        unhidden=convex is not None,
         times=times,
         limits=limits,
         threads=threads,

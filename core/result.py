@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from .solve import Field
     from .transfer import Transfer
 
+_TOGETHER = 64
+"""Free points that are looked from together."""
+
 INITIAL = ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted")
 """Components of the light that has met no diffuse surface."""
 
@@ -217,24 +220,29 @@ class Result:
             Where shapes differ, or a value is not finite, or a normal is zero.
         """
         place, normal = checked_points(points, normals)
-        geometry, transfer = self.transfer.geometry, self.transfer
+        geometry = self.transfer.geometry
         place = place - geometry.planes.centre
         out = np.zeros(len(place))
         out += self.sunlight.at(geometry.outlines, place, normal)
-        exitance = self.field.patch_emitted + (0.0 if initial else self.field.patch_exitance)
+        exitance, deep = self.field.of_cells(geometry, initial)
         sources = self.field.sources[: self.field.emitters] if initial else self.field.sources
-        deep = self.field.deep_emitted + (0.0 if initial else self.field.deep_reflected)
         for rows in coplanar(place, normal, geometry.outlines.tolerance):
             n = normal[rows[0]]
-            sight = sight_of(geometry, transfer.limits, n, float(n @ place[rows[0]]))
-            for start in range(0, len(rows), 64):
-                some = rows[start : start + 64]
-                seen = gather(sight, place[some], geometry.targets)
-                out[some] += np.pi * (seen.sky @ self.sky) + seen.patches @ exitance
-                out[some] += gather_sources(geometry.outlines, sources, place[some], n, transfer.limits)
-                if seen.deep is not None:
-                    out[some] += seen.deep @ deep
+            for start in range(0, len(rows), _TOGETHER):
+                some = rows[start : start + _TOGETHER]
+                out[some] += self._gathered(place[some], n, exitance, deep)
+                out[some] += gather_sources(geometry.outlines, sources, place[some], n, self.transfer.limits)
         return out
+
+    def _gathered(self, points, normal, exitance, deep) -> np.ndarray:
+        """(r,) float: light of the sky, and of cells, on points of one plane [lx]."""
+        transfer = self.transfer
+        if transfer.unhidden_cells is not None and transfer.unhidden_cells.holds(points, normal).all():
+            return transfer.unhidden_cells.factors(points, normal)[:, :-1] @ exitance
+        sight = sight_of(transfer.geometry, transfer.limits, normal, float(normal @ points[0]))
+        seen = gather(sight, points, transfer.geometry.cells)
+        light = np.pi * (seen.sky @ self.sky) + seen.patches @ exitance
+        return light if seen.deep is None else light + seen.deep @ deep
 
     @cached_property
     def balance(self) -> Balance:

@@ -10,7 +10,7 @@ from .geometry import Geometry
 from .specular import MANY_OUTLINES
 
 
-def needless(geometry: Geometry, sees_out: bool) -> Iterator[tuple[str, str]]:
+def needless(geometry: Geometry, sees_out: bool, unhidden: bool) -> Iterator[tuple[str, str]]:
     """Name of each step that was left out, and the reason.
 
     Parameters
@@ -18,12 +18,16 @@ def needless(geometry: Geometry, sees_out: bool) -> Iterator[tuple[str, str]]:
     geometry : Geometry
     sees_out : bool
         Whether any receiver sees the sky or the ground.
+    unhidden : bool
+        Whether nothing stands in the way of anything.
     """
     outlines, materials = geometry.outlines, geometry.surface_materials
     if not outlines.any_specular:
         yield "specular chains", "no surface mirrors or transmits regularly"
     if not sees_out:
         yield "form factors to the sky", "the scene is closed: nothing sees the sky or the ground"
+    if unhidden:
+        yield "occlusion", "the scene is closed, convex and empty: nothing stands in the way"
     black = [m.diffuse_reflectance == 0 and m.exitance == 0 for m in materials]
     if any(black):
         yield "patches of black surfaces", f"{sum(black)} of {len(black)} surfaces send out no diffuse light"

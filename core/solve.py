@@ -54,6 +54,8 @@ class Field:
     deep_emitted, deep_reflected : (p,) float
         Exitance of those luminous surfaces and of the sun patches, as the globe gathers it by way of more mirrors than
         ``sources`` are followed through [lm/m²].
+    by_patches : (e,) float
+        Illuminance whose reflection patches send out: all but sun patches [lx].
     adjusted : float
         What means over areas were out by before the light was made to add up, without regard to sign [lm].
     """
@@ -65,7 +67,24 @@ class Field:
     emitters: int
     deep_emitted: np.ndarray
     deep_reflected: np.ndarray
+    by_patches: np.ndarray
     adjusted: float
+
+    def of_cells(self, geometry: Geometry, initial: bool) -> tuple[np.ndarray, np.ndarray]:
+        """Exitance of `Geometry.cells`, and of what many mirrors show of the bright few, both (c,) float [lm/m²].
+
+        Within a patch reflected light is uneven as the light on its elements is. ``initial`` leaves it out.
+        """
+        emitted, reflected, deep = self.patch_emitted, np.zeros(len(self.by_patches)), self.deep_emitted
+        if not initial:
+            mean = geometry.from_patches(patch_means(geometry, self.by_patches))
+            uneven = np.divide(self.by_patches, mean, out=np.ones_like(mean), where=mean > 0)
+            reflected = uneven * geometry.from_patches(self.patch_exitance)
+            deep = deep + self.deep_reflected
+        return (
+            geometry.cell_means(geometry.from_patches(emitted) + reflected),
+            geometry.cell_means(geometry.from_patches(deep)),
+        )
 
 
 def solve_light(
@@ -121,7 +140,8 @@ def solve_light(
     if geometry.targets.patches.count == 0:
         recorder.skip("interreflection", "no surface reflects or emits diffusely")
         components["interreflected"] = np.zeros(count)
-        field = Field(components, np.zeros(0), np.zeros(0), [], 0, np.zeros(0), np.zeros(0), 0.0)
+        none = np.zeros(0)
+        field = Field(components, none, none, [], 0, none, none, np.zeros(count), 0.0)
     else:
         with recorder.stage("interreflection", 0.1):
             bright = ([], []) if quick else bright_few(geometry, sunlight)
@@ -178,23 +198,22 @@ def interreflect(
     sun = components["sun_direct"] + components["sun_specular"]
     none, adjusted = np.zeros(len(emitted)), np.zeros(4)
     by_globe, deep_emitted, deep_reflected = none, none, none
-    if emitted.any() and not emitters:
-        by_globe = emitted
-        components["emitted"] = transfer.on_elements(gather_patches(transfer, emitted))
-    elif emitters:
-        deep_emitted = emitted
-        given = geometry.of_elements("exitance")
-        found = _gather_bright(transfer, emitters, deep_emitted, 1.0, recorder.part(0.1, 0.4))
-        components["emitted"], adjusted[0] = brought_home(transfer, found, given)
+    if emitted.any():
+        if transfer.unhidden or not emitters:
+            by_globe = none if emitters else emitted  # at free points the globe would err where patches do not
+            found = transfer.on_elements(gather_patches(transfer, emitted))
+        else:
+            deep_emitted = emitted
+            found = _gather_bright(transfer, emitters, deep_emitted, 1.0, recorder.part(0.1, 0.4))
+        components["emitted"], adjusted[0] = brought_home(transfer, found, geometry.of_elements("exitance"))
     sky = components["sky_direct"] + components["sky_specular"]
     smooth = sky + components["emitted"]
     share = geometry.of_elements("diffuse_reflectance")
     smooth = smooth + (sunlight.blur if sunny else sun)
     if cycles == 0 or not reflectance.any():
         components["interreflected"] = np.zeros(len(sun))
-        return Field(
-            components, none, by_globe, emitters, len(emitters), deep_emitted, none, float(np.abs(adjusted).sum())
-        )
+        dark, out = np.zeros(len(sun)), float(np.abs(adjusted).sum())
+        return Field(components, none, by_globe, emitters, len(emitters), deep_emitted, none, dark, out)
     first = np.zeros(len(sun))
     if sunny:
         deep_reflected = reflectance * patch_means(geometry, sun - sunlight.blur)
@@ -224,6 +243,7 @@ def interreflect(
         len(emitters),
         deep_emitted,
         deep_reflected,
+        sum(components.values()) - (sun - sunlight.blur if sunny else 0.0),
         float(np.abs(adjusted).sum()),
     )
 
@@ -331,9 +351,9 @@ def _spread(transfer: Transfer, illuminance: np.ndarray) -> np.ndarray:
     return spread / max(float(transfer.conservation.kept @ spread), 1e-300)
 
 
-def globe_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Field) -> np.ndarray:
-    """(e,) float: relative errors that the globe's fineness causes, 95 of 100 are about below."""
-    trial, nodes = transfer.trial, transfer.nodes
+def sampled_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Field, merging: bool) -> np.ndarray:
+    """(e,) float: relative errors by the globe's fineness, and by the patches' if asked; 95 of 100 are about below."""
+    trial, nodes, geometry = transfer.trial, transfer.nodes, transfer.geometry
     exitance = field.patch_exitance + field.patch_emitted
     mirrored = np.isin(trial.nodes, transfer.specular_rows)
     ours = np.pi * product(transfer.sky_direct[trial.nodes], sky) + product(
@@ -341,16 +361,23 @@ def globe_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Fi
     )
     rows = np.searchsorted(transfer.specular_rows, trial.nodes[mirrored])
     ours[mirrored] += np.pi * product(transfer.sky_specular[rows], sky)
-    coarser = np.pi * product(trial.sky, sky_column(trial.targets, light)) + product(trial.patches, exitance)
-    sheets = 2 * len(transfer.geometry.planes.sheet_surface)
-    return relative_errors(trial, nodes.sheet, ours, coarser, sheets)[nodes.element_sheet]
+    coarser = np.pi * product(trial.sky, sky_column(trial.targets, light))
+    coarser += product(trial.cells, geometry.cell_means(geometry.from_patches(exitance)))
+    more = np.zeros(len(ours))
+    if merging and len(exitance):
+        group = geometry.targets.patches.merged(geometry.fracture.grids, geometry.fracture.element_sheet)
+        areas = geometry.patch_areas
+        mean = np.bincount(group, weights=areas * exitance) / np.bincount(group, weights=areas)
+        more = product(trial.cells, geometry.cell_means(geometry.from_patches(exitance - mean[group])))
+    sheets = 2 * len(geometry.planes.sheet_surface)
+    return relative_errors(trial, nodes.sheet, ours, coarser, more, sheets)[nodes.element_sheet]
 
 
 def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Field) -> np.ndarray:
     """(e,) float: what the errors of elements' illuminances are about below, 95 of 100 of them [lx]."""
     total = sum(field.components.values())
     exact = field.components["sun_direct"] + field.components["sun_specular"] + field.components["emitted"]
-    relative = globe_errors(transfer, light, sky, field) + OF_DOUBT * transfer.unsure
+    relative = sampled_errors(transfer, light, sky, field, merging=True) + OF_DOUBT * transfer.unsure
     return relative * (total - exact) + LEAST * total
 
 

@@ -18,6 +18,7 @@ from .globe import Hemisphere
 from .materials import Material
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
 from .rays import Flight, RayScene
+from .solids import Solids
 from .visibility import SHARED, Partial, View, look
 
 DEEPEST_CHAIN = 200
@@ -56,6 +57,7 @@ class Outlines:
     two_sided : (o,) bool
     tolerance : float
         Length below which points count as lying on a plane [m].
+    solids : Solids, optional
     """
 
     vertices: np.ndarray
@@ -64,6 +66,7 @@ class Outlines:
     materials: list[Material]
     two_sided: np.ndarray
     tolerance: float
+    solids: Solids | None = None
 
     @cached_property
     def rays(self) -> RayScene:
@@ -438,6 +441,9 @@ class GroupSight:
         beams = Beams.of(hemisphere)
         weights = np.broadcast_to(hemisphere.weights, (len(points), len(hemisphere.weights)))
         horizon = HalfSpace(hemisphere.normal, self.offset)
+        unseen_backs = np.zeros(len(self.outlines.vertices), bool)
+        if self.outlines.solids is not None:
+            unseen_backs = self.outlines.solids.unseen_backs(points, hemisphere.normal)
         left = []
         if len(self.outlines.vertices) > MANY_OUTLINES:
             left.append(_Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, 0, 0))
@@ -457,6 +463,7 @@ class GroupSight:
                 beyond[0] if beyond else None,
                 partial,
                 weights > 0 if beyond else None,
+                unseen_backs[obstacles.outlines],
             )
             sighting = Sighting(
                 rows, origin, horizon.normal, beams, obstacles, view, weights, mirrors, self.outlines, partial

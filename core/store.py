@@ -29,7 +29,7 @@ from .stages import Stage
 from .transfer import Transfer
 from .writing import complete
 
-FORMAT = 2
+FORMAT = 3
 """Raised with every change of what files hold or of how it is found."""
 
 _ARRAYS = (
@@ -54,6 +54,7 @@ def save_transfer(transfer: Transfer, path) -> Path:
         "fingerprint": asdict(transfer.fingerprint),
         "bands": transfer.geometry.targets.globe.bands,
         "times": transfer.times,
+        "unhidden": transfer.unhidden,
         "sizes": _sizes(transfer.geometry),
         "stages": [asdict(stage) for stage in transfer.stages],
     }
@@ -214,6 +215,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
             array("conservation_spread", np.float64, count),
             missing,
         ),
+        unhidden=bool(header["unhidden"]),
         times=times,
         limits=ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines)),
         threads=threads,

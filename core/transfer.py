@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .convex import ConvexRoom
 from .daylight import Daylight
 from .errors import SceneError
 from .estimate import Trial, make_trial
@@ -46,6 +47,8 @@ class Transfer:
     unsure : (e,) float
         What interpolation between nodes leaves open, over all light.
     conservation : Conservation
+    unhidden : bool
+        Whether nothing stands in the way of anything, so that form factors to patches are exact.
     times : float
         How many times finer than usual the scene is resolved.
     form_factors : (m, p) float32
@@ -86,6 +89,7 @@ class Transfer:
     lattice: Nodes
     unsure: np.ndarray
     conservation: Conservation
+    unhidden: bool
     times: float
     limits: ChainLimits
     threads: int
@@ -101,7 +105,12 @@ class Transfer:
     @cached_property
     def trial(self) -> Trial:
         """A coarser look from some of the nodes, for those who ask for errors; found when first asked for."""
-        return make_trial(self.geometry, self.nodes, self.limits, self.threads)
+        return make_trial(self.geometry, self.nodes, self.limits, self.threads, self.unhidden_cells)
+
+    @cached_property
+    def unhidden_cells(self) -> ConvexRoom | None:
+        """Where nothing stands in the way: what free points see of `Geometry.cells`."""
+        return ConvexRoom.around(self.geometry, self.geometry.cells.patches) if self.unhidden else None
 
     @cached_property
     def sees_out(self) -> bool:
@@ -114,11 +123,11 @@ class Transfer:
 
     def errors_by_globe(self) -> np.ndarray:
         """(e,) float: relative errors that the globe's fineness causes, as estimated under an even sky."""
-        from .solve import globe_errors
+        from .solve import sampled_errors
 
         light = Daylight(sky=UniformSky(1000.0))
         result = self.solve(light, tolerance=1e-2)
-        return globe_errors(self, light, result.sky, result.field)
+        return sampled_errors(self, light, result.sky, result.field, merging=False)
 
     def solve(
         self,

@@ -32,6 +32,7 @@ def look(
     past: HalfSpace | None = None,
     partial: Partial | None = None,
     wanted: np.ndarray | None = None,
+    unseen_backs: np.ndarray | None = None,
 ) -> View:
     """Find the nearest obstacle along each beam from each point.
 
@@ -52,6 +53,8 @@ def look(
         Beams of which only a part gets there; they are settled as parts of beams throughout.
     wanted : (r, k) bool, optional
         Beams that get there from each receiver: edges are not looked for in others.
+    unseen_backs : (o,) bool, optional
+        Obstacles that nobody need look for who is behind them.
 
     Returns
     -------
@@ -74,9 +77,15 @@ def look(
     width = obstacles.bounding.shape[1]
     possible: dict[int, np.ndarray] = {}
     within: dict[int, np.ndarray] = {}
-    for o in range(len(obstacles.outlines)):
-        bounded = obstacles.bounding[o]
-        columns, certain = _columns_within(hull, obstacles.vertices[o], bounded, heights[:, o], beams.directions, reach)
+    looked_for = np.ones(heights.shape, bool)
+    if unseen_backs is not None:
+        looked_for[:, unseen_backs] = heights[:, unseen_backs] < 0
+    for o in np.flatnonzero(looked_for.any(axis=0)):
+        bounded, before = obstacles.bounding[o], looked_for[:, o]
+        here = hull if before.all() else _bounding_corners(points[before])
+        columns, certain = _columns_within(
+            here, obstacles.vertices[o], bounded, heights[before, o], beams.directions, reach
+        )
         if not len(columns):
             continue
         edges = planes[:, o, bounded].astype(np.float32)
@@ -85,11 +94,12 @@ def look(
         distance = np.multiply.outer(slope, heights[:, o].astype(np.float32)).T
         if partial is not None:
             _set_partial(distance, partial, columns, heights[:, o], obstacles.normals[o])
-        if not certain.all():
+        if not (certain.all() and before.all()):
             sines = _edge_sines(edges, beams.directions[columns].astype(np.float32))
             inside = sines[0].copy(order="K") if len(sines) else np.full_like(distance, np.inf)
             for other in sines[1:]:
                 np.minimum(inside, other, out=inside)
+            inside[~before] = -np.inf
             limit = reach[columns].astype(np.float32)
             whole = inside > limit
             near = np.flatnonzero((np.abs(inside, out=inside) <= limit).T)

@@ -21,3 +21,11 @@ def light_shelf():
     sys.modules[spec.name] = module  # dataclasses look their module up
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture
+def by_globe(monkeypatch):
+    """Closed convex rooms are looked at on the globe like all others, for tests of what that does."""
+    from luzespecular.convex import ConvexRoom
+
+    monkeypatch.setattr(ConvexRoom, "of", classmethod(lambda *_: None))

@@ -49,7 +49,7 @@ def test_an_even_closed_box_closes_to_a_millionth():
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.5, 0.9, 0.99, 0.999])
-def test_a_closed_box_balances_exactly_however_white(rho):
+def test_a_closed_box_balances_exactly_however_white(rho, by_globe):
     """One bright side: what means over patches are out by is made up for, and told."""
     grey, lamp = luz.Material(diffuse_reflectance=rho), luz.Material(diffuse_reflectance=rho, exitance=100.0)
     transfer = prepare_coarse(box(grey, (3, 2, 1.5), ceiling=lamp), elements=50, max_area=0.05)

@@ -10,7 +10,7 @@ from builders import BLACK, DARK, UNIFORM, box, prepare_coarse, scene_of
 from layout_samples import triangle_rule
 
 import luzespecular as luz
-from luzespecular.estimate import LEAST, OF_DIFFERENCE, Trial, relative_errors
+from luzespecular.estimate import LEAST, OF_DIFFERENCE, OF_MERGING, Trial, relative_errors
 
 CASES = {
     case["id"]: case
@@ -119,10 +119,10 @@ def transfers():
 
 
 def test_the_error_falls_with_the_bands(transfers):
-    """The globe's part of it the faster; what interpolation leaves open stays."""
+    """The globe's part of it the faster; what interpolation and patches leave open stays."""
     for light in (UNIFORM, luz.Daylight(sky=CLEAR)):
         told = [np.median(t.solve(light).error / t.solve(light).illuminance) for t in transfers.values()]
-        assert 0.1 > told[0] > 1.3 * told[1] > 1.3**2 * told[2]
+        assert 0.1 > told[0] > 1.3 * told[1] > 1.3 * 1.15 * told[2]
     by_globe = [np.median(t.errors_by_globe()) for t in transfers.values()]
     assert by_globe[0] > 1.3 * by_globe[1] > 1.3 * 1.6 * by_globe[2]
 
@@ -179,7 +179,7 @@ def test_every_sheet_is_looked_from_again(transfers):
     assert len(transfer.trial.nodes) < 0.15 * len(sheets)
     assert len(np.unique(transfer.trial.nodes)) == len(transfer.trial.nodes)
     assert transfer.trial.targets.globe.count == pytest.approx(transfer.geometry.targets.globe.count / 2, rel=0.05)
-    total = transfer.trial.patches.sum(axis=1) + transfer.trial.sky.sum(axis=1)
+    total = transfer.trial.cells.sum(axis=1) + transfer.trial.sky.sum(axis=1)
     assert total.max() < 1 + 1e-4 and total.min() > 0.5, "mirrors absorb some"
 
 
@@ -193,15 +193,18 @@ def test_errors_of_sheets_by_their_differences():
     nodes = [*range(400), 400]
     coarser = np.full(401, 100.0)
     ours = np.where(np.arange(401) < 400, 101.0, 110.0)
-    got = relative_errors(trial_of(nodes), sheet, ours, coarser, 3)
+    none = np.zeros(401)
+    got = relative_errors(trial_of(nodes), sheet, ours, coarser, none, 3)
     assert got[0] == pytest.approx(OF_DIFFERENCE / 101, rel=0.01)
     mean = math.sqrt(np.mean(((ours - coarser) / ours) ** 2))
     assert OF_DIFFERENCE * mean < got[1] < OF_DIFFERENCE * 10 / 110, "one sample is not believed alone"
     assert got[2] == pytest.approx(OF_DIFFERENCE * mean)
-    np.testing.assert_allclose(relative_errors(trial_of(nodes), sheet, 7 * ours, 7 * coarser, 3), got)
+    np.testing.assert_allclose(relative_errors(trial_of(nodes), sheet, 7 * ours, 7 * coarser, none, 3), got)
+    merging = relative_errors(trial_of(nodes), sheet, ours, ours, ours - coarser, 3)
+    np.testing.assert_allclose(merging, OF_MERGING / OF_DIFFERENCE * got)
 
 
 def test_errors_without_samples_or_light():
-    np.testing.assert_array_equal(relative_errors(trial_of([]), np.zeros(0, int), np.zeros(0), np.zeros(0), 2), LEAST)
-    got = relative_errors(trial_of([0, 1]), np.zeros(2, int), np.zeros(2), np.zeros(2), 1)
+    np.testing.assert_array_equal(relative_errors(trial_of([]), np.zeros(0, int), *[np.zeros(0)] * 3, 2), LEAST)
+    got = relative_errors(trial_of([0, 1]), np.zeros(2, int), *[np.zeros(2)] * 3, 1)
     assert got.tolist() == [0]

@@ -222,7 +222,7 @@ def test_a_point_in_a_glass_house():
     assert at(house, [2, 1.5, 1], NORTH) == pytest.approx(0.7 * np.pi * 500, rel=1e-3)
 
 
-def test_diffuse_light_passes_panes():
+def test_diffuse_light_passes_panes(by_globe):
     """Two rooms with a pane between: what crosses is dimmed once, and comes back dimmed again."""
     glow = luz.Material(exitance=1000)
     rooms = {f"a {k}": p for k, p in box_polygons((2, 1, 1)).items()}
