@@ -2,7 +2,8 @@
 
 Requests come in faster than they can be answered: the newest counts, one at a time is solved in a thread of its own,
 and Blender's timer writes what is done. While one drags, reflections are followed roughly and work planes left alone;
-once the settings rest, all is brought to its end. Frames to be rendered are solved to the end before they are drawn.
+once the settings rest, all is brought to its end, unless they move again before. Frames to be rendered are solved to
+the end before they are drawn.
 """
 
 from __future__ import annotations
@@ -93,6 +94,8 @@ class Live:
             return False
         if self._job is not None:
             if not self._job.finished:
+                if self._wanted and not self._quick:
+                    self._job.cancel()  # the hand moves again: to settle has time
                 return True
             self._conclude(scene)
             if self._study is None:
@@ -129,7 +132,7 @@ class Live:
 
     def _begin(self, scene: bpy.types.Scene) -> bool:
         now = time.monotonic()
-        settle = self._quick and now - self._changed_at > _REST
+        settle = self._quick and not self._wanted and now - self._changed_at > _REST
         if not (self._wanted or settle):
             return self._quick
         if bpy.context.mode.startswith("EDIT"):  # attributes cannot be written there
@@ -172,7 +175,9 @@ class Live:
 
     def _conclude(self, scene: bpy.types.Scene) -> None:
         job, self._job = self._job, None
-        if isinstance(job.error, luz.LuzEspecularError | MemoryError):
+        if isinstance(job.error, luz.Cancelled):
+            self._quick = True  # what is shown has still to be settled
+        elif isinstance(job.error, luz.LuzEspecularError | MemoryError):
             _tell(solver_message(job.error))
             self._quick = False
         elif job.error is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..job import Task
-from .reports import redraw
+from .reports import redraw_sidebars
 
 _TICK = 0.05  # seconds between looks at the thread
 
@@ -77,4 +77,4 @@ class InBackground:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.luzespecular.running = False
         context.workspace.status_text_set(None)
-        redraw(context)
+        redraw_sidebars(context)

@@ -24,6 +24,15 @@ def redraw(context: bpy.types.Context) -> None:
                 area.tag_redraw()
 
 
+def redraw_sidebars(context: bpy.types.Context) -> None:
+    """Have the sidebars of all 3D viewports drawn anew; the views, which take longer, are left as they are."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            for region in area.regions if area.type == "VIEW_3D" else ():
+                if region.type == "UI":
+                    region.tag_redraw()
+
+
 def time_left(seconds: float) -> str:
     """Return for people how long something will still take, no more precise than it is known."""
     if seconds < 60.0:

@@ -13,7 +13,7 @@ from .. import export, scene_check, writeback
 from ..job import Task
 from ..notices import BadInput, Notice, stop_on_errors
 from .background import InBackground
-from .reports import redraw
+from .reports import redraw_sidebars
 
 
 class LUZESPECULAR_OT_check_scene(InBackground, bpy.types.Operator):
@@ -45,7 +45,7 @@ class LUZESPECULAR_OT_check_scene(InBackground, bpy.types.Operator):
         if not state.stage:
             state.stage = "scene check"
             context.workspace.status_text_set(iface_("LuzEspecular: checking the scene (Esc cancels)"))
-            redraw(context)
+            redraw_sidebars(context)
 
     def conclude(self, context, task: Task):
         """List what was found."""
@@ -58,7 +58,7 @@ class LUZESPECULAR_OT_check_scene(InBackground, bpy.types.Operator):
         if self._exported is not None:
             found += scene_check.of_solver(self._exported, task.result)
         scene_check.show(context.window_manager, found)
-        redraw(context)
+        redraw_sidebars(context)
         errors, warnings = (sum(one.level == level for one in found) for level in ("ERROR", "WARNING"))
         text = rpt_("Scene checked: {errors} errors, {warnings} warnings")
         self.report({"WARNING"} if errors else {"INFO"}, text.format(errors=errors, warnings=warnings))

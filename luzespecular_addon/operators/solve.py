@@ -14,7 +14,7 @@ from ..job import Job, seconds_left
 from ..notices import BadInput
 from ..translations import solver_message
 from .background import InBackground
-from .reports import redraw, report_all, time_left
+from .reports import redraw_sidebars, report_all, time_left
 
 
 class LUZESPECULAR_OT_solve(InBackground, bpy.types.Operator):
@@ -72,7 +72,7 @@ class LUZESPECULAR_OT_solve(InBackground, bpy.types.Operator):
         if left is not None:
             text = f"{text}  {time_left(left)}"
         context.workspace.status_text_set(text)
-        redraw(context)
+        redraw_sidebars(context)
 
 
 class LUZESPECULAR_OT_cancel(bpy.types.Operator):

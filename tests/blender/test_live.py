@@ -1,5 +1,6 @@
 """Live results: other hours, dates and skies on a transfer that is ready, by frames, by the timer, in renders."""
 
+import threading
 import time
 
 import numpy as np
@@ -134,8 +135,11 @@ def dragging(addon, bpy, monkeypatch):
             while live.advance() and live._job is not None:
                 live._job.wait()
 
+        def pass_time(self, seconds):
+            now[0] += seconds
+
         def rest(self):
-            now[0] += 10.0
+            self.pass_time(10.0)
             while live.advance():
                 if live._job is not None:
                     live._job.wait()
@@ -153,6 +157,30 @@ def test_dragging_shows_and_rest_settles(addon, bpy, courtyard, dragging):
     settled = means(courtyard)
     assert quick == pytest.approx(settled, rel=0.03)
     assert settled == pytest.approx(solved_anew(bpy, courtyard), rel=1e-4)
+
+
+def test_a_hand_that_moves_again_need_not_wait_until_all_is_settled(addon, bpy, courtyard, dragging, monkeypatch):
+    dragging.drag(hour=11.0)
+    live, released = addon.live.current, threading.Event()
+    tell = addon.job.Job._tell
+    with monkeypatch.context() as slow:
+        slow.setattr(addon.job.Job, "_tell", lambda job, *said: released.wait(10.0) and tell(job, *said))
+        dragging.pass_time(10.0)
+        assert live.advance()
+        settling = live._job
+        assert not live._quick
+        bpy.context.scene.luzespecular.site.hour = 11.5
+        live.want()
+        assert live.advance()
+        released.set()
+        settling.wait()
+    assert isinstance(settling.error, addon.luz.Cancelled)
+    dragging.drag(hour=12.0)
+    assert courtyard.results.title.startswith("2026-06-22, 12:00")
+    dragging.rest()
+    assert not live._quick
+    assert not bpy.context.window_manager.luzespecular.live_remark
+    assert means(courtyard) == pytest.approx(solved_anew(bpy, courtyard), rel=1e-4)
 
 
 def test_a_changed_scene_stops_it_and_says_so(addon, bpy, courtyard, dragging):

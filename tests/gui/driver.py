@@ -26,6 +26,7 @@ class Window:
     def __init__(self, folder):
         self.folder = folder
         self.pauses = []  # seconds between looks at the clock: how long the window stood still
+        self.work = []  # of those, processor time of Blender's main thread, whatever else the machine does
         bpy.context.preferences.view.show_splash = False
         bpy.context.preferences.view.show_developer_ui = True
 
@@ -112,14 +113,16 @@ class Window:
             yield pause
 
     def clock(self):
-        """Note how long the window stands still at most, from now on: look at ``pauses``."""
+        """Note how long the window stands still at most, from now on: look at ``pauses`` and ``work``."""
         self.pauses.clear()
-        last = [time.perf_counter()]
+        self.work.clear()
+        last = [time.perf_counter(), time.thread_time()]
 
         def tick():
-            now = time.perf_counter()
-            self.pauses.append(now - last[0])
-            last[0] = now
+            now = [time.perf_counter(), time.thread_time()]
+            self.pauses.append(now[0] - last[0])
+            self.work.append(now[1] - last[1])
+            last[:] = now
             return 0.005
 
         bpy.app.timers.register(tick)

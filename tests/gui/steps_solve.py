@@ -165,7 +165,8 @@ def drag_hour(window):
     window.press("LEFTMOUSE", x + 20, y, "RELEASE")
     yield 0.1
     stop_clock()
-    print("longest pauses while dragging [s]:", [round(p, 3) for p in sorted(window.pauses)[-3:]], flush=True)
+    for what, seconds in (("pauses", window.pauses), ("work of the main thread", window.work)):
+        print(f"longest {what} while dragging [s]:", [round(p, 3) for p in sorted(seconds)[-3:]], flush=True)
 
 
 def press_solve(window):
