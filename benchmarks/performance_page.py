@@ -233,8 +233,8 @@ def radiance_text(part: dict, engines: dict) -> list[str]:
         needed = best["seconds"] * (best["rms"] / AIMED) ** 2
         out += [
             f"pyradiance {engines['pyradiance']}. Without its cache, chance makes Radiance's error fall with the square"
-            " root of its seconds, and what it cuts off does not fall with more samples at all: from its last such line "
-            f"on, {AIMED:g} % would take {needed:,.0f} s or more, {needed / fastest:,.0f} times the "
+            " root of its seconds, and what it cuts off does not fall with more samples at all: from its last such line"
+            f" on, {AIMED:g} % would take {needed:,.0f} s or more, {needed / fastest:,.0f} times the "
             f"{seconds(fastest)} s of the solver's quickest setting that errs no more.",
             "",
         ]

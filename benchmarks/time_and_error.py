@@ -32,6 +32,9 @@ BANDS = (20, 40, 60, 90, 120)
 USUAL = 60
 """Bands up to here come first, then accuracies; finer ones have what is left of the budget."""
 
+TRIAL_BANDS = 30
+"""Of the trial solution with which the solver meets an accuracy."""
+
 ACCURACIES = (0.03, 0.01)
 REPEATS = 3
 OF_BUDGET = 0.2
@@ -159,16 +162,22 @@ def measure_scene(name: str, args, kept: dict, keep, seconds: float) -> None:
 
 def least_seconds(rows: list[dict], method: str, setting: dict) -> float:
     """Seconds that a setting takes at least, by what one run of coarser ones took: in proportion, or endless where they
-    failed. Starting and reading the values at places count as well.
+    failed. Starting and reading the values at places count as well. An accuracy takes a trial on a few bands at least.
     """
     ((kind, value),) = setting.items()
     found = 0.0
     for row in rows:
-        if row["method"] == method and kind in row["setting"]:
-            finer = value / row["setting"][kind] if kind == "bands" else row["setting"][kind] / value
-            if finer > 1:
-                once = row["wall"] - row["seconds"] * (row["runs"] - 1) if "seconds" in row else float("inf")
-                found = max(found, once * finer)
+        if row["method"] != method:
+            continue
+        ((other, coarser),) = row["setting"].items()
+        if other != kind:
+            coarse, finer = kind == "accuracy" and coarser <= TRIAL_BANDS, 1.0
+        else:
+            finer = value / coarser if kind == "bands" else coarser / value
+            coarse = finer > 1
+        if coarse:
+            once = row["wall"] - row["seconds"] * (row["runs"] - 1) if "seconds" in row else float("inf")
+            found = max(found, once * finer)
     return found
 
 
@@ -319,7 +328,7 @@ def draw(state: dict, path: Path) -> None:
             noise = (sum(entry["noise"][k] ** 2 * n for k, n in share.items()) / sum(share.values())) ** 0.5
             ax.axhline(noise, color="grey", linestyle="--", linewidth=0.8, label="noise of the reference")
         for limits, set_limits in ((ax.get_xlim(), ax.set_xlim), (ax.get_ylim(), ax.set_ylim)):
-            low, high = np.log10(limits)
+            low, high = np.log10(limits) if ax.lines else (0, 1)
             set_limits(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
         ax.set_title(name.replace("_", " "), fontsize=10)
         ax.grid(True, which="both", linewidth=0.3, alpha=0.5)

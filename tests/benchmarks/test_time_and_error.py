@@ -57,8 +57,8 @@ def test_what_would_not_fit_is_left_out(rooms, monkeypatch):
 
     def measured(script, task, limit):
         asked.append((task["method"], *task["setting"].items(), limit))
-        if task["method"] == "published":
-            return {"failed": "not done", "wall": limit}
+        if task["method"] == "published" or task["scene"] == "furnished":
+            return {"failed": "not done", "wall": limit / 2}
         return {"seconds": 2.0, "runs": 3, "wall": 8.0, "peak_gb": 0.1, "errors": {}}  # 2 s to start, 2 s a run
 
     monkeypatch.setattr(rooms["apart"], "run", measured)
@@ -75,6 +75,9 @@ def test_what_would_not_fit_is_left_out(rooms, monkeypatch):
     assert set(rows) == {(m, b) for m in ("published", "solver") for b in (20, 60, 90)} | {("solver", 0.03)}
     for left_out in (("published", 60), ("published", 90), ("solver", 90)):
         assert "left out" in rows[left_out]["failed"]
+    asked.clear()
+    tool.measure_scene("furnished", args, kept, lambda: None, 60.0)  # the trial for an accuracy would fail as well
+    assert [task[:2] for task in asked] == [("published", ("bands", 20)), ("solver", ("bands", 20))]
 
 
 def test_scenes_share_what_is_left(rooms):
