@@ -209,10 +209,7 @@ def _sky_rows(transfer: Transfer, parcels: np.ndarray) -> np.ndarray:
 
 def _from_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:
     """(m, c) float32: illuminance of the nodes by patches of exitances ``(p, c)``; see `solve.gather_patches`."""
-    out = transfer.form_factors @ exitance
-    conservation = transfer.conservation
-    out += conservation.spread.astype(np.float32)[:, None] * (conservation.missing.astype(np.float32) @ exitance)
-    return out
+    return transfer.form_factors @ exitance + transfer.conservation.made_up(exitance)
 
 
 class _Stays:
@@ -224,16 +221,24 @@ class _Stays:
         self.elements = area * share * (1 - conservation.lost)
         self.nodes = transfer.nodes.weights.gathered(self.elements, len(transfer.nodes.points))
         self.kept = transfer.nodes.weights.gathered(conservation.kept, len(transfer.nodes.points))
-        spread = conservation.spread / max(float(self.kept @ conservation.spread), 1e-300)
-        trust = trusted(float((area * share) @ conservation.lost) / max(float((area * share).sum()), 1e-300))
-        self.evened = trust / max(1 - float(self.nodes @ spread), 1e-12) * spread
+        self.parts = conservation.enclosures
+        self.held = self.parts.sums(self.parts.of_nodes, self.kept * conservation.spread)
+        self.spread = conservation.spread / np.maximum(self.held, 1e-300)[self.parts.of_nodes]
+        self.stay = self.parts.sums(self.parts.of_nodes, self.nodes * self.spread)
+        self.trust = trusted(float((area * share) @ conservation.lost) / max(float((area * share).sum()), 1e-300))
 
     def settled(self, reflected: np.ndarray, direct: np.ndarray, lumens: np.ndarray) -> np.ndarray:
         """Interreflected light ``(m, c)`` that adds up, for light that comes to the nodes, or as lumens to elements."""
         missing = (self.nodes - self.kept) @ reflected
         missing[: direct.shape[1]] += self.nodes @ direct
         missing[direct.shape[1] :] += lumens
-        return reflected + np.outer(self.evened, missing)
+        landed = np.array(
+            [np.where(self.parts.of_nodes == part, self.kept, 0.0) @ reflected for part in range(self.parts.count)]
+        )
+        landed[self.held <= 0] = 0.0
+        shares = landed / np.maximum(landed.sum(axis=0), 1e-300)
+        shares *= self.trust * missing / np.maximum(1 - self.stay @ shares, 1e-12)
+        return reflected + self.spread[:, None] * shares[self.parts.of_nodes]
 
 
 def _look(transfer: Transfer, places: Places) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from .convex import ConvexRoom
+from .enclosures import Enclosures
 from .gather import Gathered, gather
 from .geometry import Geometry, sight_of
 from .nodes import Nodes, settled
@@ -265,7 +266,8 @@ class Conservation:
     """How light that is sent out and seen to stay is made to arrive to the last lumen.
 
     Means over faces and patches err a little, mostly where planes meet, and so would the sum of what arrives. What is
-    missing is spread over all receivers as evenly lit surroundings would light them: an even field stays as it is.
+    missing is spread over all receivers of the same enclosure, as evenly lit surroundings would light them: an even
+    field stays as it is, and no light comes into a room that is closed off.
 
     Attributes
     ----------
@@ -274,18 +276,20 @@ class Conservation:
     lost : (e,) float
         Share of what an element sends out that escapes, falls on dark sides or is cut off.
     spread : (m,) float
-        Illuminance of the nodes for one lumen more [1/m²].
+        Illuminance of the nodes for one lumen more in their enclosure [1/m²].
     missing : (p,) float
         Lumens that are missing for one lm/m² of each patch's exitance [m²].
+    enclosures : Enclosures
     """
 
     kept: np.ndarray
     lost: np.ndarray
     spread: np.ndarray
     missing: np.ndarray
+    enclosures: Enclosures
 
     @classmethod
-    def of(cls, geometry: Geometry, nodes: Nodes, rows: Rows) -> Conservation:
+    def of(cls, geometry: Geometry, nodes: Nodes, rows: Rows, enclosures: Enclosures) -> Conservation:
         """Compare what patches send out with what nodes receive."""
         area = geometry.fracture.element_areas
         kept = geometry.areas_kept
@@ -304,8 +308,17 @@ class Conservation:
         for profile in geometry.targets.patches.profiles:
             profile.evened(sent, landed)
         missing = (sent - landed) * trusted(1 - sent / np.maximum(geometry.patch_areas, 1e-300))
-        total = float(share @ seen)
-        return cls(kept, lost, seen / total if total > 0 else seen, missing)
+        total = enclosures.sums(enclosures.of_nodes, share * seen)[enclosures.of_nodes]
+        return cls(kept, lost, np.divide(seen, total, out=seen, where=total > 0), missing, enclosures)
+
+    def made_up(self, exitance: np.ndarray) -> np.ndarray:
+        """(m,) or (m, c): illuminance of the nodes by what is missing of patches' exitance ``(p,)`` or ``(p, c)``."""
+        parts = self.enclosures
+        by_part = np.zeros((parts.count, *exitance.shape[1:]), exitance.dtype)
+        for part in range(parts.count):
+            by_part[part] = np.where(parts.of_patches == part, self.missing, 0.0).astype(exitance.dtype) @ exitance
+        spread = self.spread.astype(exitance.dtype)
+        return (spread if exitance.ndim == 1 else spread[:, None]) * by_part[parts.of_nodes]
 
 
 def trusted(lost):
@@ -327,11 +340,15 @@ class Exchange:
         Form factors from each patch (receiver) to each patch (emitter).
     spread, missing : (p,) float
         What evens out their errors: see `Conservation`.
+    part : (p,) int
+        Enclosure of each patch.
     """
 
     factors: np.ndarray
     spread: np.ndarray
     missing: np.ndarray
+    part: np.ndarray
 
     def __matmul__(self, exitance: np.ndarray) -> np.ndarray:
-        return self.factors @ exitance + self.spread * (self.missing @ exitance)
+        by_part = np.bincount(self.part, weights=self.missing * exitance)
+        return self.factors @ exitance + (self.spread * by_part[self.part] if len(self.part) else 0.0)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from .convex import ConvexRoom
+from .enclosures import Enclosures
 from .errors import SceneError, TransferFileError
 from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
 from .fingerprint import Fingerprint
@@ -223,10 +224,12 @@ def _prepared(
             lambda nodes: _check_memory(geometry, nodes, memory),
             convex,
         )
-        conservation = Conservation.of(geometry, nodes, gathered)
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
+        first = nodes.weights.node[nodes.weights.start[:-1]]
+        enclosures = Enclosures.of(patch_factors, geometry.patch_areas, gathered.form_factors, first)
+        conservation = Conservation.of(geometry, nodes, gathered, enclosures)
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
-        exchange = Exchange(patch_factors, spread, conservation.missing)
+        exchange = Exchange(patch_factors, spread, conservation.missing, enclosures.of_patches)
     sees_out = bool(gathered.sky_direct.any() or gathered.sky_specular.any())
     for name, why in needless(geometry, sees_out, convex is not None):
         recorder.skip(name, why)

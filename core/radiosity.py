@@ -88,7 +88,9 @@ def all_settled(exchange, reflectance: np.ndarray, initial: np.ndarray) -> np.nd
     """
     _bounded_gain(exchange, reflectance)
     matrix = exchange.factors.astype(np.float32)
-    matrix += np.outer(exchange.spread, exchange.missing).astype(np.float32)
+    made_up = np.outer(exchange.spread, exchange.missing).astype(np.float32)
+    made_up[exchange.part[:, None] != exchange.part] = 0.0
+    matrix += made_up
     matrix *= -reflectance.astype(np.float32)
     matrix[np.diag_indices_from(matrix)] += 1.0
     return np.linalg.solve(matrix, initial)

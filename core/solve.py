@@ -318,8 +318,7 @@ def _gather_bright(
 
 def gather_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:
     """(m,) float: illuminance of the nodes from patches of exitance ``(p,)`` [lx]."""
-    conservation = transfer.conservation
-    return product(transfer.form_factors, exitance) + conservation.spread * (conservation.missing @ exitance)
+    return product(transfer.form_factors, exitance) + transfer.conservation.made_up(exitance)
 
 
 def brought_home(transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray) -> tuple[np.ndarray, float]:
@@ -346,9 +345,16 @@ def settled_home(
 
 
 def _spread(transfer: Transfer, illuminance: np.ndarray) -> np.ndarray:
-    """(e,) float: illuminance for one lumen more, only where there is some already."""
-    spread = np.where(illuminance > 0, transfer.on_elements(transfer.conservation.spread), 0.0)
-    return spread / max(float(transfer.conservation.kept @ spread), 1e-300)
+    """(e,) float: illuminance for one lumen more, only where there is some already.
+
+    Enclosures share it as they share the light that has landed: what is dark beside a bright one stays so.
+    """
+    conservation, parts = transfer.conservation, transfer.conservation.enclosures
+    spread = np.where(illuminance > 0, transfer.on_elements(conservation.spread), 0.0)
+    held = parts.sums(parts.of_elements, conservation.kept * spread)
+    landed = np.where(held > 0, parts.sums(parts.of_elements, conservation.kept * illuminance), 0.0)
+    share = landed / max(float(landed.sum()), 1e-300)
+    return spread * (share / np.maximum(held, 1e-300))[parts.of_elements]
 
 
 def sampled_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Field, merging: bool) -> np.ndarray:

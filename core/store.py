@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from .enclosures import Enclosures
 from .errors import TransferFileError
 from .fingerprint import Fingerprint
 from .form_factors import Conservation, Exchange
@@ -44,6 +45,7 @@ _ARRAYS = (
     "unsure",
 )
 _WEIGHTS = ("weights", "around")
+_PARTS = ("of_patches", "of_nodes", "of_elements")
 
 
 def save_transfer(transfer: Transfer, path) -> Path:
@@ -69,6 +71,8 @@ def save_transfer(transfer: Transfer, path) -> Path:
     arrays["exchange_spread"] = transfer.exchange.spread
     for name in ("lost", "spread", "missing"):
         arrays[f"conservation_{name}"] = getattr(transfer.conservation, name)
+    for name in _PARTS:
+        arrays[f"enclosures_{name}"] = getattr(transfer.conservation.enclosures, name)
     text = json.dumps(header).encode()
     with complete(path) as unfinished, unfinished.open("wb") as file:
         np.savez(file, header=np.frombuffer(text, np.uint8), **arrays)
@@ -191,6 +195,14 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
     specular_rows = array("specular_rows", np.int64, None, below=count)
     deep_rows = array("deep_rows", np.int64, None, below=count)
     missing = array("conservation_missing", np.float64, patches)
+    of_patches = array("enclosures_of_patches", np.int64, patches, below=max(patches, 1))
+    parts = int(of_patches.max(initial=0)) + 1
+    enclosures = Enclosures(
+        parts,
+        of_patches,
+        array("enclosures_of_nodes", np.int64, count, below=parts),
+        array("enclosures_of_elements", np.int64, elements, below=parts),
+    )
     return Transfer(
         geometry=geometry,
         form_factors=array("form_factors", np.float32, count, patches),
@@ -203,6 +215,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
             array("exchange_factors", np.float32, patches, patches).astype(float),
             array("exchange_spread", np.float64, patches),
             missing,
+            of_patches,
         ),
         unlit=array("unlit", np.float32, count),
         truncated=array("truncated", np.float32, count),
@@ -214,6 +227,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
             array("conservation_lost", np.float64, elements),
             array("conservation_spread", np.float64, count),
             missing,
+            enclosures,
         ),
         unhidden=bool(header["unhidden"]),
         times=times,

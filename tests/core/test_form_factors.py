@@ -167,7 +167,8 @@ def test_what_is_sent_is_trusted_where_little_escapes():
 def test_an_empty_row_of_conservation():
     """Nothing that reflects: nothing to spread, and no division by nothing."""
     transfer = coarse(box(BLACK, without=("ceiling",)))
-    conservation = Conservation.of(transfer.geometry, transfer.nodes, rows_of(transfer))
+    enclosures = transfer.conservation.enclosures
+    conservation = Conservation.of(transfer.geometry, transfer.nodes, rows_of(transfer), enclosures)
     assert len(conservation.missing) == 0 and np.isfinite(conservation.spread).all()
 
 

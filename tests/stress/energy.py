@@ -77,6 +77,20 @@ def dim_beside_bright() -> Outcome:
     return near([result.mean("bright floor"), result.mean("dim floor")], [1e5, 1e-3], 1e-4, 1e-9 * 1e5)
 
 
+def lamp_beside_dim_room() -> Outcome:
+    """Two closed boxes under lamps, one lit 1e8 times as much: in the other all is as if it were alone."""
+
+    def floor(bright: float) -> float:
+        scene = luz.Scene()
+        for title, exitance, origin in (("bright", bright, (0, 0, 0)), ("dim", 5e-4, (1.5, 0, 0))):
+            for name, polygon in box_polygons((1, 1, 1), origin).items():
+                own = exitance if name == "ceiling" else 0.0
+                scene.add(f"{title} {name}", polygon, luz.Material(diffuse_reflectance=0.5, exitance=own))
+        return solved(scene, DARK, bands=24, elements=300, tolerance=1e-9).mean("dim floor")
+
+    return near(floor(5e4), floor(5e-4), 1e-2)
+
+
 def situations() -> Iterator[Situation]:
     def row(name, run, long=False):
         return Situation("energy", name, run, long)
@@ -91,3 +105,4 @@ def situations() -> Iterator[Situation]:
     for ratio in (1, 4.5, 20):
         yield row(f"sunlight down a pipe of length {ratio}", lambda ratio=ratio: pipe_in_sun(ratio))
     yield row("1e5 lx beside 1e-3 lx", dim_beside_bright)
+    yield row("a room of 1e5 lx beside one of 1e-3 lx", lamp_beside_dim_room)
