@@ -44,7 +44,7 @@ class Enclosures:
         first : (e,) int
             A node of each element.
         """
-        of_patches = enclosed(areas[:, None] * np.abs(factors))
+        of_patches = enclosed(areas[:, None] * factors)
         count = int(of_patches.max(initial=0)) + 1
         of_nodes = np.zeros(len(form_factors), np.int64)
         if count > 1:
@@ -71,26 +71,35 @@ def enclosed(flux: np.ndarray) -> np.ndarray:
     flux : (p, p) float
         What each patch gives each other, in any measure of light.
     """
-    number = np.zeros(len(flux), np.int64)
-    used = np.flatnonzero((flux.sum(axis=0) > 0) | (flux.sum(axis=1) > 0))
-    both = flux[np.ix_(used, used)]
-    both = both + both.T
-    of = np.arange(len(used))
-    while len(both) > 1:
-        total = both.sum(axis=1)
-        own = both.diagonal().copy()
-        np.fill_diagonal(both, -1.0)
-        partner = np.where(total - own > APART * total, both.argmax(axis=1), np.arange(len(both)))
-        np.fill_diagonal(both, own)
-        joined = _joined(partner)
-        if int(joined.max()) + 1 == len(both):
+    flux = np.array(flux, float)
+    of = np.arange(len(flux))
+    used = np.ones(len(flux), bool)
+    while len(flux) > 1:
+        own = flux.diagonal().copy()
+        sent, got = flux.sum(axis=1), flux.sum(axis=0)
+        if len(of) == len(flux):
+            used = (sent > 0) | (got > 0)
+        np.fill_diagonal(flux, -1.0)
+        partner = flux.argmax(axis=1)
+        blind = np.flatnonzero(sent <= own)
+        partner[blind] = flux[:, blind].argmax(axis=0)
+        np.fill_diagonal(flux, own)
+        closed = sent + got - 2 * own <= APART * (sent + got)
+        joined = _joined(np.where(closed, np.arange(len(flux)), partner))
+        if int(joined.max()) + 1 == len(flux):
             break
-        of = joined[of]
-        order = np.argsort(joined, kind="stable")
-        starts = np.flatnonzero(np.diff(joined[order], prepend=-1))
-        both = np.add.reduceat(np.add.reduceat(both[order], starts, axis=0)[:, order], starts, axis=1)
-    number[used] = of
-    return number
+        of, flux = joined[of], _contracted(flux, joined)
+    numbers = np.zeros(len(of), np.int64)
+    numbers[used] = np.unique(of[used], return_inverse=True)[1].reshape(-1)
+    return numbers
+
+
+def _contracted(flux: np.ndarray, joined: np.ndarray) -> np.ndarray:
+    """Flux between parts, of what flows between their members."""
+    order = np.argsort(joined, kind="stable")
+    starts = np.flatnonzero(np.diff(joined[order], prepend=-1))
+    rows = np.stack([flux[some].sum(axis=0) for some in np.split(order, starts[1:])])
+    return np.add.reduceat(rows[:, order], starts, axis=1)
 
 
 def _joined(partner: np.ndarray) -> np.ndarray:
