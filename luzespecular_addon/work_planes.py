@@ -20,6 +20,9 @@ from . import mesh_arrays, writeback
 HEIGHT = 0.75
 """Usual height of a work plane above the floor [m] (EN 12464-1 and NBR ISO/CIE 8995-1 for desks)."""
 
+QUANTITIES = ("illuminance", "initial", "interreflected")
+"""What is read at points; the other parts of the light are known of surfaces alone."""
+
 _CHUNK = 128
 
 
@@ -44,10 +47,10 @@ class Grid:
 
 @dataclass(frozen=True)
 class Reading:
-    """What was read on one grid: (m,) illuminances [lx]."""
+    """What was read on one grid: (m,) floats [lx] for each of `QUANTITIES`."""
 
     grid: Grid
-    illuminance: NDArray[np.float64]
+    values: dict[str, NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -127,19 +130,21 @@ def _straight(normals: NDArray) -> NDArray:
 
 
 def read(result: luz.Result, grids_: Iterable[Grid], progress: Callable[[float, str], bool]) -> list[Reading]:
-    """Compute the illuminance on grids, in any thread; raises `luz.Cancelled` when `progress` says so."""
+    """Compute the light on grids, in any thread; raises `luz.Cancelled` when `progress` says so."""
     grids_ = list(grids_)
     total = sum(len(grid.points) for grid in grids_)
     readings, done = [], 0
     for grid in grids_:
-        values = np.full(len(grid.points), np.nan)
-        for start in range(0, len(values), _CHUNK):
+        total, initial = np.full((2, len(grid.points)), np.nan)
+        for start in range(0, len(total), _CHUNK):
             if not progress(done / total, "work planes"):
                 raise luz.Cancelled("Cancelled at: work planes")
             some = slice(start, start + _CHUNK)
-            values[some] = result.at(grid.points[some], grid.normals[some])
-            done += len(values[some])
-        readings.append(Reading(grid, values))
+            total[some] = result.at(grid.points[some], grid.normals[some])
+            initial[some] = result.at(grid.points[some], grid.normals[some], initial=True)
+            done += len(total[some])
+        parts = (total, initial, np.maximum(total - initial, 0.0))  # rounding aside, nothing is negative
+        readings.append(Reading(grid, dict(zip(QUANTITIES, parts, strict=True))))
     return readings
 
 
@@ -149,13 +154,14 @@ def write(scene: bpy.types.Scene, readings: Sequence[Reading]) -> None:
     for object_ in all_of(scene):
         reading = by_name.get(object_.name)
         mesh = object_.data
-        if reading is None or len(reading.illuminance) != len(mesh.polygons):
+        if reading is None or len(reading.grid.points) != len(mesh.polygons):
             if writeback.holds_results(mesh):
                 writeback.clear(mesh)
             object_.luzespecular.plane.property_unset("state")
             continue
         writeback.begin(mesh)
-        mesh_arrays.write_face_floats(mesh, writeback.ILLUMINANCE, reading.illuminance)
+        for name, values in reading.values.items():
+            mesh_arrays.write_face_floats(mesh, writeback.attribute_of(name), values)
         object_.luzespecular.plane.state = reading.grid.state
 
 
@@ -165,9 +171,9 @@ def forget_values(scene: bpy.types.Scene) -> None:
         object_.luzespecular.plane.property_unset("state")
 
 
-def statistics_of(object_: bpy.types.Object, unit_scale: float) -> Statistics | None:
-    """Return the statistics of a work plane; None where it has not been read."""
-    values = mesh_arrays.read_face_values(object_.data, writeback.ILLUMINANCE, np.float32)
+def statistics_of(object_: bpy.types.Object, unit_scale: float, quantity: str = "illuminance") -> Statistics | None:
+    """Return the statistics of a quantity on a work plane; None where it has not been read."""
+    values = mesh_arrays.read_face_values(object_.data, writeback.attribute_of(quantity), np.float32)
     if values is None:
         return None
     areas = mesh_arrays.polygon_areas(object_.data) * _area_scale(object_) * unit_scale**2
@@ -182,16 +188,20 @@ def _area_scale(object_: bpy.types.Object) -> float:
     return float(np.linalg.norm(turned, axis=1).mean()) if len(turned) else 1.0
 
 
-HEADER = ("work_plane", "x_m", "y_m", "z_m", "normal_x", "normal_y", "normal_z", "illuminance_lx")
+HEADER = (
+    *("work_plane", "x_m", "y_m", "z_m", "normal_x", "normal_y", "normal_z"),
+    *(f"{quantity}_lx" for quantity in QUANTITIES),
+)
 
 
 def rows(scene: bpy.types.Scene, unit_scale: float) -> Iterator[tuple[str | float, ...]]:
     """Yield a row for `HEADER` for each point that was read."""
     for grid in grids(scene, unit_scale):
         mesh = scene.objects[grid.object_name].data
-        values = mesh_arrays.read_face_values(mesh, writeback.ILLUMINANCE, np.float32)
-        if values is not None:
-            for row in np.column_stack([grid.points, grid.normals, values]).tolist():
+        found = [mesh_arrays.read_face_values(mesh, writeback.attribute_of(name), np.float32) for name in QUANTITIES]
+        if found[0] is not None:  # a file solved by an earlier version knows the total alone
+            known = [np.full(len(found[0]), np.nan) if values is None else values for values in found]
+            for row in np.column_stack([grid.points, grid.normals, *known]).tolist():
                 yield (grid.object_name, *row)
 
 

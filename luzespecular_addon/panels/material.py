@@ -6,6 +6,7 @@ import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
 from .. import materials
+from ..translations import CONTEXT
 from .drawing import draw_notices
 from .presets import LUZESPECULAR_PT_material_presets
 
@@ -47,7 +48,7 @@ class LUZESPECULAR_PT_material(bpy.types.Panel):
                 column.prop(settings, "specular_reflectance")
                 column.prop(settings, "regular_transmittance")
             column.prop(settings, "exitance")
-            column.prop(settings, "reference")
+            column.prop(settings, "reference", text="", placeholder=iface_("Reference", CONTEXT))
         else:
             _draw_optics(column.box().column(align=True), optics)
         _draw_sum(layout, optics)

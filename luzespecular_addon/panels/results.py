@@ -8,6 +8,7 @@ import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
 from .. import display, isolines
+from ..translations import CONTEXT
 from .drawing import Sidebar, draw_notices, draw_wrapped
 
 
@@ -146,7 +147,9 @@ def _side_name(row: bpy.types.PropertyGroup) -> str:
 
 def _draw_table(layout: bpy.types.UILayout, results: bpy.types.PropertyGroup) -> None:
     row = layout.row()
-    _draw_columns(row, iface_("Surface [lx]"), iface_("Min"), iface_("Mean"), iface_("Max"))
+    # In our context, since Blender's own words for these are too long for a column.
+    heads = (iface_("Min", CONTEXT), iface_("Mean", CONTEXT), iface_("Max", CONTEXT))
+    _draw_columns(row, iface_("Surface [lx]"), *heads)
     row.label(text="", icon="BLANK1")  # as wide as the list's scroll bar
     layout.template_list("LUZESPECULAR_UL_surfaces", "", results, "rows", results, "active_row", rows=5)
     if 0 <= results.active_row < len(results.rows):

@@ -9,7 +9,9 @@ import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
 from .. import placements, work_planes
+from ..choices import QUANTITY_ITEMS
 from ..legend import label
+from ..translations import CONTEXT
 from .drawing import Sidebar, draw_wrapped
 
 
@@ -40,12 +42,17 @@ def _draw_plane(box: bpy.types.UILayout, plane: bpy.types.Object, scene: bpy.typ
     settings = plane.luzespecular.plane
     row = box.row()
     row.label(text=plane.name, icon="MESH_GRID", translate=False)
-    found, results = work_planes.statistics_of(plane, placements.unit_scale(scene)), scene.luzespecular.results
+    shown = scene.luzespecular.display.quantity
+    quantity = shown if shown in work_planes.QUANTITIES else work_planes.QUANTITIES[0]
+    found = work_planes.statistics_of(plane, placements.unit_scale(scene), quantity)
+    results = scene.luzespecular.results
     if found is None:
         draw_wrapped(box.column(align=True), iface_("Not read yet: solve"), "INFO", width)
         return
     if work_planes.is_stale(plane):
         draw_wrapped(box.column(align=True), iface_("Moved or edited since: solve again"), "ERROR", width)
+    title = next(name for key, name, _ in QUANTITY_ITEMS if key == quantity)
+    box.label(text=f"{iface_('Illuminance')}: {iface_(title, CONTEXT)}", translate=False)
     rows = [
         (iface_("Minimum"), f"{label(found.minimum)} lx"),
         (iface_("Mean"), f"{label(found.mean)} lx"),
@@ -54,7 +61,7 @@ def _draw_plane(box: bpy.types.UILayout, plane: bpy.types.Object, scene: bpy.typ
         (iface_("Area"), f"{found.area:.2f} m²"),
         (iface_("{threshold} lx or more").format(threshold=label(settings.threshold)), f"{found.share_above:.0%}"),
     ]
-    if results.sky_illuminance > 0.0 and not results.has_sun:
+    if results.sky_illuminance > 0.0 and not results.has_sun and quantity == "illuminance":
         rows.append((iface_("Mean daylight factor"), f"{100.0 * found.mean / results.sky_illuminance:.2f} %"))
     column = box.column(align=True)
     for name, value in rows:

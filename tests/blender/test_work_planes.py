@@ -102,8 +102,8 @@ def plane(addon, bpy, make):
     return bpy.context.object
 
 
-def lux(addon, object_):
-    return addon.mesh_arrays.read_face_values(object_.data, "illuminance", np.float32)
+def lux(addon, object_, name="illuminance"):
+    return addon.mesh_arrays.read_face_values(object_.data, name, np.float32)
 
 
 def test_points_are_read_where_they_are(addon, bpy, plane):
@@ -118,6 +118,31 @@ def test_points_are_read_where_they_are(addon, bpy, plane):
     assert found.area == pytest.approx(4.0)
     assert found.mean == pytest.approx(expected.mean(), rel=1e-4)
     assert found.minimum == pytest.approx(expected.min(), rel=1e-4)
+
+
+def test_parts_of_the_light_are_read_too(addon, bpy, plane):
+    result = addon.display.kept_result(bpy.context.scene)[1]
+    points = addon.mesh_arrays.polygon_centres(plane.data).astype(float)
+    initial = result.at(points, np.tile([0.0, 0.0, 1.0], (16, 1)), initial=True)
+    np.testing.assert_allclose(lux(addon, plane, "illuminance_initial"), initial, rtol=1e-4)
+    reflected = lux(addon, plane, "illuminance_interreflected")
+    assert reflected.max() > 10.0
+    np.testing.assert_allclose(lux(addon, plane), initial + reflected, rtol=1e-4)
+    found = addon.work_planes.statistics_of(plane, 1.0, "interreflected")
+    assert found.maximum == pytest.approx(reflected.max())
+
+    settings = bpy.context.scene.luzespecular.display
+    settings.quantity = "initial"
+    (shown,) = [one for one in addon.display.shown_meshes(bpy.context.scene) if one.object_ == plane]
+    np.testing.assert_allclose(shown.values, initial, rtol=1e-4)
+    settings.quantity, settings.unit = "interreflected", "FACTOR"
+    (shown,) = [one for one in addon.display.shown_meshes(bpy.context.scene) if one.object_ == plane]
+    np.testing.assert_allclose(shown.values, 100.0 * reflected / OPEN_SKY, rtol=1e-3)
+    settings.quantity = "sky_direct"
+    (shown,) = [one for one in addon.display.shown_meshes(bpy.context.scene) if one.object_ == plane]
+    assert np.isnan(shown.values).all()
+    bpy.ops.luzespecular.clear_results()
+    assert not [name for name in plane.data.attributes.keys() if "illuminance" in name]
 
 
 def test_a_plane_changes_no_light_and_appears_in_no_table(addon, bpy, plane):
@@ -212,6 +237,9 @@ def test_points_are_saved(addon, bpy, plane, tmp_path):
     assert len(rows) == 16
     assert [float(row["illuminance_lx"]) for row in rows] == pytest.approx(lux(addon, plane).tolist(), rel=1e-4)
     assert {row["z_m"] for row in rows} == {"0.75"}
+    for row in rows:
+        total, initial, reflected = (float(row[f"{name}_lx"]) for name in addon.work_planes.QUANTITIES)
+        assert total == pytest.approx(initial + reflected, rel=1e-4)
     bpy.ops.luzespecular.clear_results()
     assert not bpy.ops.luzespecular.save_work_planes.poll()
 

@@ -78,18 +78,19 @@ class Window:
         """
         place = self.region(region, area)
         x = place.x + 0.7 * place.width
-        for y in range(place.y + place.height - 8, place.y + 8, -12):
-            self.move(x, y)
-            yield 0.1
-            if self.hovered(area, region) == name:
-                found.append((x, y))
-                return
+        for patience in (0.1, 0.6):  # a busy machine notices late where the mouse is
+            for y in range(place.y + place.height - 8, place.y + 8, -12):
+                self.move(x, y)
+                yield patience
+                if self.hovered(area, region) == name:
+                    found.append((x, y))
+                    return
         raise AssertionError(f"no property '{name}' in sight")
 
-    def scroll(self, area="VIEW_3D", region="UI", down=True):
-        """Scroll a region to its end or its beginning: steps."""
+    def scroll(self, area="VIEW_3D", region="UI", down=True, times=60):
+        """Scroll a region to its end or its beginning, or some way there: steps."""
         with self.override(region, area):
-            for _ in range(60):
+            for _ in range(times):
                 (bpy.ops.view2d.scroll_down if down else bpy.ops.view2d.scroll_up)(deltax=0, deltay=120)
         self.area(area).tag_redraw()
         yield 0.8

@@ -30,6 +30,9 @@ def steps(window):
     # The sidebar from its top and to its end, with all panels open, and the panel of materials: in each language.
     yield from _click(window, "north_offset", below=115)  # opens Sun Light
     yield from _click(window, "fineness", below=-59)  # opens Surfaces
+    yield from window.scroll(times=15)
+    yield from _click(window, "fineness", below=34)  # opens Scene Check
+    yield from window.scroll(down=False)
     properties = window.area("PROPERTIES")
     properties.spaces.active.context = "MATERIAL"
     for language, ending in (("en_US", ""), ("pt_BR", "-pt")):
@@ -41,12 +44,15 @@ def steps(window):
             continue
         view.use_translate_interface = True
         yield 1.0
-        for name, area, region, down in (
-            ("sidebar", "VIEW_3D", "UI", False),
-            ("sidebar-end", "VIEW_3D", "UI", True),
-            ("material", "PROPERTIES", "WINDOW", True),
+        with window.override():
+            bpy.ops.luzespecular.check_scene()  # findings in the language shown
+        for name, area, region, down, times in (
+            ("sidebar", "VIEW_3D", "UI", False, 60),
+            ("sidebar-middle", "VIEW_3D", "UI", True, 15),
+            ("sidebar-end", "VIEW_3D", "UI", True, 60),
+            ("material", "PROPERTIES", "WINDOW", True, 60),
         ):
-            yield from window.scroll(area, region, down)
+            yield from window.scroll(area, region, down, times)
             whole = window.shot("whole")
             _crop(whole, window, window.region(region, area), window.folder / f"{name}{ending}.png")
             whole.unlink()

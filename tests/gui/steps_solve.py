@@ -57,6 +57,8 @@ def steps(window):
     yield from window.until(lambda: not state().running, 120)
     assert not scene.luzespecular.results.rows
     window.shot("thrown away")
+    window.press("ESC")  # closes the message, which would keep the mouse to itself
+    yield 0.5
     floor.location.z += 0.01
     yield 0.3
 

@@ -19,7 +19,7 @@ TEXTS = {
     "Blocks and reflects light, but gets no results": "Obstrui e reflete luz, mas não recebe resultados",
     "Ignore": "Ignorar",
     "Takes no part": "Não participa",
-    "Lit Sides": "Lados iluminados",
+    "Lit Sides": "Lados com luz",
     "Which sides of the faces receive and reflect light; every face blocks light from both sides": (
         "Quais lados das faces recebem e refletem luz; toda face obstrui a luz dos dois lados"
     ),
