@@ -1,6 +1,6 @@
 """Where the time goes: stages, growth, skips, the cost model; beside Embree and beside Radiance.
 
-    python benchmarks/performance.py [--parts stages growth ...] [--minutes 9] [--docs] [--output build/performance]
+    python benchmarks/performance.py [--parts stages growth ...] [--minutes 10] [--docs] [--output build/performance]
 
 Every measurement runs in a process of its own, so that none disturbs another and peak memory is its own; what is to be
 compared runs in turn within one process, or one after the other in one run. Medians of several runs where the budget of
@@ -33,7 +33,7 @@ from apart import ROOT
 
 import luzespecular as luz
 
-PARTS = {"stages": 1.5, "model": 0.5, "embree": 0.5, "skips": 2.0, "growth": 2.0, "radiance": 2.5}
+PARTS = {"stages": 1.5, "model": 0.5, "embree": 0.5, "skips": 2.5, "growth": 2.5, "radiance": 2.5}
 """In the order in which they are measured, with their shares of the budget."""
 
 REUSES = (
@@ -177,13 +177,10 @@ class Bench:
     def skips(self) -> dict:
         """Each with it and without it, in turn."""
         out = {}
-        coarse = self.room | {
-            "bands": min(self.args.bands, 40),
-            "repeats": 1 if self.args.quick else 4 * self.args.repeats,
-        }
+        often = self.room | {"repeats": 1 if self.args.quick else 4 * self.args.repeats}
         for k, name in enumerate(solver_side.SKIPS):
-            most = self.left / (len(solver_side.SKIPS) - k) / 2
-            out[name] = self.do("skip", name=name, **coarse, most_seconds=most)
+            most = 0.6 * self.left / (len(solver_side.SKIPS) - k)
+            out[name] = self.do("skip", name=name, **often, most_seconds=most)
         return out
 
     def embree(self) -> dict:
@@ -237,7 +234,7 @@ def versions() -> dict:
 def main():
     ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ap.add_argument("--parts", nargs="+", choices=list(PARTS), default=list(PARTS))
-    ap.add_argument("--minutes", type=float, default=9.0, help="budget for all parts together")
+    ap.add_argument("--minutes", type=float, default=10.0, help="budget for all parts together")
     ap.add_argument("--bands", type=int, default=60)
     ap.add_argument("--max-area", type=float, default=USUAL_FACE, help="largest face [m²]")
     ap.add_argument("--repeats", type=int, default=5, help="runs whose median counts, where the budget allows")

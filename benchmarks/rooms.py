@@ -90,6 +90,14 @@ def with_shelf_of(count: int) -> luz.Scene:
     return scene
 
 
+def closed() -> luz.Scene:
+    """The room without its shelf, its opening closed by a luminous panel."""
+    scene, corners = shell(), light_shelf_room().SURFACES
+    opening = [corners["sill"][2], corners["sill"][1], corners["lintel"][0], corners["lintel"][3]]
+    scene.add("panel", opening, luz.Material(diffuse_reflectance=0.5, exitance=1000.0))
+    return scene
+
+
 def between_mirrors() -> luz.Scene:
     """The room with mirrors for its west and east walls, which face each other."""
     return shell(wall_west=MIRROR, wall_east=MIRROR)
