@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
+
 import bpy
 
 from ..job import Task
+from . import loose_ends
 from .reports import redraw_sidebars
 
 _TICK = 0.05  # seconds between looks at the thread
@@ -14,7 +17,7 @@ class InBackground:
     """An operator whose `prepare` returns a task, or None where there is none, and whose `conclude` ends it."""
 
     _task: Task | None = None
-    _timer: bpy.types.Timer | None = None
+    _ends: ExitStack | None = None
 
     @classmethod
     def poll(cls, context):
@@ -37,8 +40,13 @@ class InBackground:
         state = context.window_manager.luzespecular
         state.running, state.cancel, state.fraction, state.stage, state.seconds_left = True, False, 0.0, "", -1.0
         state.live_remark = ""
-        self._timer = context.window_manager.event_timer_add(_TICK, window=context.window)
-        context.window_manager.modal_handler_add(self)
+        manager = context.window_manager
+        timer = manager.event_timer_add(_TICK, window=context.window)
+        manager.modal_handler_add(self)
+        self._ends = loose_ends.new()
+        self._ends.callback(_stopped)
+        self._ends.callback(manager.event_timer_remove, timer)
+        self._ends.callback(self._task.cancel)
         self._task.start()
         return {"RUNNING_MODAL"}
 
@@ -74,7 +82,10 @@ class InBackground:
         self._tidy(context)
 
     def _tidy(self, context) -> None:
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.luzespecular.running = False
-        context.workspace.status_text_set(None)
+        self._ends.close()
         redraw_sidebars(context)
+
+
+def _stopped() -> None:
+    bpy.context.window_manager.luzespecular.running = False
+    loose_ends.clear_status()

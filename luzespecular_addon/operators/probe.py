@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from typing import ClassVar
 
 import bpy
@@ -9,6 +10,7 @@ from bpy.app.translations import pgettext_iface as iface_
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
 from .. import display, drawing, probe
+from . import loose_ends
 from .polls import NeedsResults
 from .reports import redraw
 
@@ -27,15 +29,20 @@ class LUZESPECULAR_OT_probe(NeedsResults, bpy.types.Operator):
     _hit: probe.Hit | None
     _mouse: tuple[int, int]
     _region: bpy.types.Region | None
-    _handle: object
+    _ends: ExitStack
 
     def invoke(self, context, event):
         """Begin to follow the mouse."""
         self._state, self._targets, self._hit, self._region = (), [], None, None
         self._mouse = (0, 0)
-        self._handle = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_PIXEL")
+        handle = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_PIXEL")
         context.window.cursor_modal_set("CROSSHAIR")
-        context.workspace.status_text_set(iface_("Probe: click keeps the reading shown; Esc or right click ends"))
+        text = iface_("Probe: click keeps the reading shown; Esc or right click ends")
+        context.workspace.status_text_set(text)
+        self._ends = loose_ends.new()
+        self._ends.callback(bpy.types.SpaceView3D.draw_handler_remove, handle, "WINDOW")
+        self._ends.callback(_restore_cursors)
+        self._ends.callback(loose_ends.clear_status)
         context.window_manager.modal_handler_add(self)
         self._look(context, event)
         return {"RUNNING_MODAL"}
@@ -63,9 +70,7 @@ class LUZESPECULAR_OT_probe(NeedsResults, bpy.types.Operator):
         self._end(context)
 
     def _end(self, context):
-        bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
-        context.window.cursor_modal_restore()
-        context.workspace.status_text_set(None)
+        self._ends.close()
         redraw(context)
         return {"FINISHED"}
 
@@ -118,6 +123,11 @@ class LUZESPECULAR_OT_clear_pins(bpy.types.Operator):
         context.scene.luzespecular.results.pins.clear()
         redraw(context)
         return {"FINISHED"}
+
+
+def _restore_cursors() -> None:
+    for window in bpy.context.window_manager.windows:
+        window.cursor_modal_restore()
 
 
 def _view_under(context, x: int, y: int) -> tuple[bpy.types.Area, bpy.types.Region] | tuple[None, None]:

@@ -108,6 +108,21 @@ def test_switching_off_leaves_nothing_behind(bpy):
         assert len(pointers) == 6
 
 
+def test_switching_off_ends_what_operators_left_open(addon):
+    """Blender drops running operators then without calling them; tests/gui/steps_extension.py does so in a window."""
+    import addon_utils
+
+    done = []
+    ends, kept = addon.operators.loose_ends.new(), addon.operators.loose_ends.new()
+    ends.callback(done.append, "second")
+    ends.callback(done.append, "first")
+    kept.callback(done.append, "ended by itself")
+    kept.close()
+    addon_utils.disable(PACKAGE, default_set=True)
+    assert done == ["ended by itself", "first", "second"]
+    addon_utils.enable(PACKAGE, default_set=True)
+
+
 def test_failed_registration_is_undone(bpy, addon, monkeypatch):
     import importlib
 
