@@ -197,10 +197,7 @@ def found(study: Study, result: luz.Result) -> list[scene_check.Found]:
 
 
 def _remarks_of_solver(result: luz.Result) -> list[Notice]:
-    return [
-        Notice("WARNING", f"{solver_message(finding.message)}; {solver_message(finding.remedy)}")
-        for finding in result.transfer.findings
-    ]
+    return [Notice("WARNING", solver_message(str(finding))) for finding in result.transfer.findings]
 
 
 def _part(progress: Progress, begin: float, end: float) -> Progress:

@@ -132,12 +132,12 @@ def _straight(normals: NDArray) -> NDArray:
 def read(result: luz.Result, grids_: Iterable[Grid], progress: Callable[[float, str], bool]) -> list[Reading]:
     """Compute the light on grids, in any thread; raises `luz.Cancelled` when `progress` says so."""
     grids_ = list(grids_)
-    total = sum(len(grid.points) for grid in grids_)
+    count = sum(len(grid.points) for grid in grids_)
     readings, done = [], 0
     for grid in grids_:
         total, initial = np.full((2, len(grid.points)), np.nan)
         for start in range(0, len(total), _CHUNK):
-            if not progress(done / total, "work planes"):
+            if not progress(done / count, "work planes"):
                 raise luz.Cancelled("Cancelled at: work planes")
             some = slice(start, start + _CHUNK)
             total[some] = result.at(grid.points[some], grid.normals[some])

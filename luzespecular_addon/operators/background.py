@@ -60,7 +60,11 @@ class InBackground:
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        self.show_progress(context, self._task)
+        try:
+            self.show_progress(context, self._task)
+        except Exception:
+            self._tidy(context)  # else all buttons would stay grey
+            raise
         if not self._task.finished:
             return {"PASS_THROUGH"}
         self._tidy(context)

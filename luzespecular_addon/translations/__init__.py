@@ -34,11 +34,21 @@ def solver_message(said: Exception | str) -> str:
     if isinstance(said, MemoryError):
         return rpt_("There is not enough memory: choose a coarser fineness, or a larger largest face")
     said = str(said)
+    known = _known(said)
+    for end in re.finditer("; ", said) if known is None else ():  # a finding's message and its remedy
+        parts = _known(said[: end.start()]), _known(said[end.end() :])
+        if None not in parts:
+            return "; ".join(parts)
+    return known or said
+
+
+def _known(said: str) -> str | None:
+    """Return the translation of what the templates know; None of all else."""
     for template, pattern in _PATTERNS:
         match = pattern.fullmatch(said)
         if match:
             return rpt_(template).format(**match.groupdict())
-    return said
+    return None
 
 
 def _pattern(template: str) -> re.Pattern[str]:

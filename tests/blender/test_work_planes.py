@@ -244,6 +244,14 @@ def test_points_are_saved(addon, bpy, plane, tmp_path):
     assert not bpy.ops.luzespecular.save_work_planes.poll()
 
 
+def test_reading_tells_how_far_it_is(addon, bpy, plane):
+    result = addon.display.kept_result(bpy.context.scene)[1]
+    (grid,) = addon.work_planes.grids(bpy.context.scene, 1.0)
+    told = []
+    addon.work_planes.read(result, [grid] * 4, lambda fraction, stage: told.append((fraction, stage)) or True)
+    assert told == [(share, "work planes") for share in (0.0, 0.25, 0.5, 0.75)]
+
+
 def test_reading_can_be_cancelled(addon, bpy, plane):
     result = addon.display.kept_result(bpy.context.scene)[1]
     grids = addon.work_planes.grids(bpy.context.scene, 1.0)
