@@ -6,12 +6,17 @@ a situation does not come out as expected.
     python benchmarks/stress.py                  # all but the long ones, some minutes
     python benchmarks/stress.py --long           # the long ones as well (millions of triangles, full resolution)
     python benchmarks/stress.py --only energy    # one family, or situations with this in their name
+
+What takes longer than --limit seconds (300) is stopped and counts as not as expected.
 """
 
 import argparse
+import contextlib
 import logging
+import signal
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1] / "tests"
@@ -19,7 +24,26 @@ TESTS = Path(__file__).resolve().parents[1] / "tests"
 sys.path[:0] = [str(TESTS / "stress"), str(TESTS)]
 
 import table  # noqa: E402
-from situations import run  # noqa: E402
+from situations import holds, run  # noqa: E402
+
+
+@contextlib.contextmanager
+def at_most(seconds: float) -> Iterator[None]:
+    """Stop what takes longer, with `TimeoutError`; where there are no alarms (Windows), it takes what it takes."""
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def stop(*_) -> None:
+        raise TimeoutError(f"no end within {seconds:g} s")
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def main(arguments=None) -> int:
@@ -27,6 +51,7 @@ def main(arguments=None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--long", action="store_true", help="the long situations as well")
     parser.add_argument("--only", default="", metavar="TEXT", help="a family, or part of situations' names")
+    parser.add_argument("--limit", type=float, default=300.0, metavar="SECONDS", help="of one situation (300)")
     options = parser.parse_args(arguments)
     logging.disable(logging.WARNING)
     failed, total = [], 0
@@ -35,7 +60,11 @@ def main(arguments=None) -> int:
         if (situation.long and not options.long) or options.only not in f"{situation.family} {situation.name}":
             continue
         start = time.perf_counter()
-        outcome = run(situation)
+        try:
+            with at_most(options.limit):
+                outcome = run(situation)
+        except TimeoutError as error:
+            outcome = holds(False, "an end", str(error))
         seconds = time.perf_counter() - start
         total += 1
         if not outcome.holds:

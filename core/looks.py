@@ -21,7 +21,7 @@ _NOTHING, _UNSURE = -1, -2
 _RAYS, _FEWER_RAYS, _MANY_OUTLINES = 64, 24, 20_000
 _MOST_COVERED, _TOUCHING = 500, 1e-6
 _HUNG_UP = 0.02
-_MOST_SHEETS, _OF_ONE_SURFACE = 300, 40
+_MOST_SHEETS, _SHEETS_OF_MANY, _OF_ONE_SURFACE, _MOST_RAYS = 1_000, 300, 400, 20_000
 _WORTH_A_LOOK = 2e-4
 _BLIND, _SEEN, _MOSTLY = 0.02, 0.1, 0.45
 _OWN = 0.98
@@ -70,8 +70,9 @@ def findings(surfaces: list[Surface], planes: Planes, rays: RayScene, touching: 
     area = np.bincount(planes.outline_sheet, polygons.areas(planes.outlines), len(planes.sheet_normal))
     two_sided = np.array([surface.two_sided for surface in surfaces])[planes.sheet_surface]
     clear = np.array([surface.material.is_transparent for surface in surfaces])[planes.sheet_surface]
-    sheets = _largest(planes, area)
-    count = _RAYS if len(planes.outlines) <= _MANY_OUTLINES else _FEWER_RAYS
+    many = len(planes.outlines) > _MANY_OUTLINES
+    sheets = _largest(planes, area, _SHEETS_OF_MANY if many else _MOST_SHEETS)
+    count = _FEWER_RAYS if many else max(_FEWER_RAYS, min(_RAYS, _MOST_RAYS // max(len(sheets), 1)))
     points = _places(planes, sheets, count).reshape(-1, 3)
     towards = np.stack([_directions(planes.sheet_normal[k], 0.37 * k, count) for k in sheets.tolist()])
     away = (
@@ -118,13 +119,13 @@ def _met(planes: Planes, rays: RayScene, points, towards: np.ndarray, extent, to
     return met.reshape(towards.shape[:2])
 
 
-def _largest(planes: Planes, area: np.ndarray) -> np.ndarray:
+def _largest(planes: Planes, area: np.ndarray, most: int) -> np.ndarray:
     """Some sheets of each surface, the largest, without those of next to no area."""
     order = np.lexsort((-area, planes.sheet_surface))
     surface = planes.sheet_surface[order]
     rank = np.arange(len(order)) - np.searchsorted(surface, surface)
     kept = order[(rank < _OF_ONE_SURFACE) & ((area[order] > _WORTH_A_LOOK * area.sum()) | (rank == 0))]
-    return np.sort(kept[np.argsort(-area[kept], kind="stable")[:_MOST_SHEETS]])
+    return np.sort(kept[np.argsort(-area[kept], kind="stable")[:most]])
 
 
 def _places(planes: Planes, sheets: np.ndarray, count: int) -> np.ndarray:
@@ -188,7 +189,7 @@ def _wrong_sides(surfaces: list[Surface], planes: Planes, seen: Looks, spared: n
                 "inverted normals",
                 _concerned(planes, k, seen.sheets[mine]),
                 f"Surface '{surfaces[k].name}' has its back to {_named(surfaces, planes, watched)} and its front sees "
-                "nothing",
+                f"nothing{_looked_at(planes, seen, k)}",
                 "turn its normals (reverse the order of the vertices), or make it two-sided",
             )
         )
@@ -201,11 +202,18 @@ def _wrong_sides(surfaces: list[Surface], planes: Planes, seen: Looks, spared: n
                 "inverted normals" if inside else "seen from behind",
                 _concerned(planes, k, seen.sheets[mine]),
                 f"Surface '{surfaces[k].name}' is seen from behind by {_named(surfaces, planes, watched)}, where it is "
-                "black: it has one side only",
+                f"black: it has one side only{_looked_at(planes, seen, k)}",
                 "turn its normals, make it two-sided, or give it a second surface behind",
             )
         )
     return found
+
+
+def _looked_at(planes: Planes, seen: Looks, surface: int) -> str:
+    """What to add where not all of a surface was looked from."""
+    some = np.count_nonzero(planes.sheet_surface[seen.sheets] == surface)
+    every = np.count_nonzero(planes.sheet_surface == surface)
+    return "" if some == every else f" (of its {every} planes the {some} largest were looked at, others may be alike)"
 
 
 def _closed(surfaces, planes: Planes, seen: Looks, area, clear) -> list[Finding]:

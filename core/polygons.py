@@ -207,8 +207,10 @@ def is_convex(loop, tolerance: float) -> bool:
     bend = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     if np.any(bend < -tolerance * np.maximum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1))):
         return False
-    turn = np.arctan2(bend, (a * b).sum(axis=1)).sum()
-    return turn < 2 * np.pi * 1.5
+    onward = (a * b).sum(axis=1)
+    if np.any((np.abs(bend) <= tolerance * np.linalg.norm(a, axis=1)) & (onward < 0)):
+        return False  # there and back
+    return np.arctan2(bend, onward).sum() < 2 * np.pi * 1.5
 
 
 def triangulate(loop) -> np.ndarray:

@@ -19,6 +19,7 @@ PLANARITY = 1e-5
 """Largest departure of a vertex from its face's plane, relative to the face's size, that still counts as flat."""
 
 _LARGEST_COORDINATE = 1e100
+_SAME_AREA = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +156,18 @@ def _polygon_pieces(name: str, points: np.ndarray):
             )
     if size == 0 or twice_area <= 1e-14 * size**2:
         raise SceneError(f"Surface '{name}' has no area: its vertices repeat or lie on one line; mend or remove it")
-    return _flat_pieces(points, unit)
+    pieces, counts, source = _flat_pieces(points, unit)
+    if not _covers(pieces, float(twice_area)):
+        raise SceneError(
+            f"Surface '{name}': the polygon crosses itself at a corner or covers a part twice; split it or reorder its "
+            "vertices"
+        )
+    return pieces, counts, source, {}
+
+
+def _covers(pieces: np.ndarray, twice_area: float) -> bool:
+    """Whether pieces have the area of the loop that they were cut from, which they have not where it meets itself."""
+    return abs(2 * polygons.areas(pieces).sum() - twice_area) <= _SAME_AREA * twice_area
 
 
 def _flat_pieces(points: np.ndarray, unit: np.ndarray):
@@ -173,7 +185,7 @@ def _flat_pieces(points: np.ndarray, unit: np.ndarray):
                 part[i] = points[nearest]
     cleaned = [polygons.without_flat_corners(part[None])[0][1][0] for part in lifted if len(part) > 2]
     pieces, counts = polygons.pad(cleaned)
-    return pieces, counts, np.zeros(len(cleaned), np.int64), {}
+    return pieces, counts, np.zeros(len(cleaned), np.int64)
 
 
 def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
@@ -204,6 +216,8 @@ def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
         edge = np.roll(corners, -1, axis=1) - corners
         turn = np.einsum("fvc,fc->fv", polygons.cross(edge, np.roll(edge, -1, axis=1)), unit)
         convex = flat & (turn > -1e-9 * size[:, None] ** 2).all(axis=1) & (length < 5 or _turns_once(edge, unit))
+        back = np.einsum("fvc,fvc->fv", edge, np.roll(edge, -1, axis=1)) < 0
+        convex &= ~(back & (np.abs(turn) <= 1e-9 * size[:, None] ** 2)).any(axis=1)
         # between corners that lie together a bend inwards would not show
         convex &= (np.linalg.norm(edge, axis=2) > 1e-8 * size[:, None]).all(axis=1)
         for some, loops in polygons.without_flat_corners(corners[convex]):
@@ -211,13 +225,19 @@ def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
             counts.append(np.full(len(some), loops.shape[1]))
             source.append(rows[convex][some])
         bent.append(rows[~flat])
-        for row, polygon, normal in zip(rows[~convex], corners[~convex], unit[~convex], strict=True):
+        each = (rows, corners, unit, flat, twice_area[sound])
+        for row, polygon, normal, flat_too, around in zip(*(values[~convex] for values in each), strict=True):
             loop = (polygon - polygon[0]) @ polygons.plane_basis(normal).T
             if polygons.crosses_itself(loop):
                 raise SceneError(
                     f"Surface '{name}': the edges of face {row} cross each other; split it or reorder its vertices"
                 )
             triangles = polygon[polygons.triangulate(loop)]
+            if flat_too and not _covers(triangles, around):
+                raise SceneError(
+                    f"Surface '{name}': face {row} crosses itself at a corner or covers a part twice; split it or "
+                    "reorder its vertices"
+                )
             pieces.append(triangles)
             counts.append(np.full(len(triangles), 3))
             source.append(np.full(len(triangles), row))

@@ -229,7 +229,7 @@ def interreflect(
     else:
         settled = _cycles_after_first(transfer.exchange, reflectance, smooth, once, cycles, checkpoint)
     exitance = reflectance * settled
-    again = first + transfer.on_elements(gather_patches(transfer, exitance))
+    again = np.maximum(first + transfer.on_elements(gather_patches(transfer, exitance)), 0.0)
     adjusted[2] = transfer.conservation.missing @ exitance
     if cycles is None:
         again, adjusted[3] = settled_home(transfer, again, sun + components["emitted"] + sky, share)
@@ -328,7 +328,10 @@ def brought_home(transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarr
     missing = sent - float(conservation.kept @ illuminance)
     if float((transfer.geometry.fracture.element_areas * exitance) @ conservation.lost) > _CLOSED * sent:
         return illuminance, missing  # the globe knows what escapes less well than this light is known
-    return illuminance + missing * _spread(transfer, illuminance), missing
+    home = illuminance + missing * _spread(transfer, illuminance)
+    if home.min(initial=0.0) < 0:
+        home = illuminance * max(sent, 0.0) / max(sent - missing, 1e-300)
+    return home, missing
 
 
 def settled_home(
@@ -341,7 +344,11 @@ def settled_home(
     missing = float(stays @ (initial + interreflected)) - float(conservation.kept @ interreflected)
     # of the scene, not of the light at hand, so that lights add up
     trust = trusted(float((area * share) @ conservation.lost) / max(float((area * share).sum()), 1e-300))
-    return interreflected + trust * missing / max(1 - float(stays @ spread), 1e-12) * spread, missing
+    home = interreflected + trust * missing / max(1 - float(stays @ spread), 1e-12) * spread
+    if home.min(initial=0.0) < 0:  # too much arrived, and some are too dark to give of it: all give by what they have
+        landed, leaving = float(conservation.kept @ interreflected), float(stays @ interreflected)
+        home = interreflected * max(1 + trust * missing / max(landed - leaving, 1e-12 * landed, 1e-300), 0.0)
+    return home, missing
 
 
 def _spread(transfer: Transfer, illuminance: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from builders import UNIFORM, prepare_coarse
 from planted_faults import FAULTS, GREY, moved, rectangle, room, solid, turned
 
 import luzespecular as luz
+from luzespecular import looks
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -90,6 +91,32 @@ def test_how_wide_a_gap_is():
         }
     )
     assert not [f for f in luz.check(covered) if f.kind == "gap" and "floor" in (f.surface, *f.others)]
+
+
+def small_solids(count, turned):
+    """A mesh of cubes, none in another's planes, in a room."""
+    corners, faces = [], []
+    for k in range(count):
+        place = [0.05 + 0.32 * (k % 12) + 0.001 * k, 0.05 + 0.3 * (k // 12) + 0.0013 * k, 0.5 + 0.0017 * k]
+        own, sides = solid(place, 0.2, turn=k in turned)
+        faces += [[corner + 8 * k for corner in side] for side in sides]
+        corners.append(own)
+    scene = room()
+    scene.add("cubes", np.concatenate(corners), GREY, faces=faces)
+    return scene
+
+
+def test_many_small_solids_are_all_looked_at():
+    (finding,) = (f for f in luz.check(small_solids(60, (3, 57))) if f.kind == "inverted normals")
+    assert set(finding.faces.tolist()) >= {*range(18, 24), *range(342, 348)} - {18, 342}
+    assert "were looked at" not in finding.message
+    assert not luz.check(small_solids(60, ()))
+
+
+def test_where_not_all_is_looked_at_it_says_so(monkeypatch):
+    monkeypatch.setattr(looks, "_OF_ONE_SURFACE", 10)
+    (finding,) = (f for f in luz.check(small_solids(4, range(4))) if f.kind == "inverted normals")
+    assert "of its 24 planes the 10 largest were looked at" in finding.message
 
 
 @pytest.mark.parametrize("scale", [1e-2, 1.0, 20.0])

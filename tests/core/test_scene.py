@@ -236,3 +236,20 @@ def test_corners_that_repeat_or_lie_on_edges_count_for_nothing(polygon, area, me
     light = luz.Daylight(sky=luz.UniformSky(1000.0))
     result = luz.prepare(scene, bands=8, max_area=np.inf).solve(light)
     np.testing.assert_allclose(result.illuminance, 1000 * np.pi, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        [[3, 4], [0, 4], [2, 2], [3, 1], [4, 0], [1, 1], [2, 2]],
+        [[2, 2], [4, 4], [4, 0], [2, 2], [1, 1], [3, 0]],
+        [[0, 2], [0, 1], [1, 3], [4, 3], [3, 1], [0, 4]],
+    ],
+    ids=["at a corner", "at its first", "an edge through a corner"],
+)
+@pytest.mark.parametrize("mesh", [False, True])
+def test_loops_that_cross_at_corners_are_refused(loop, mesh):
+    """Found by random trials: edges that only touch, but change sides there; a part of them was lost."""
+    scene = Scene()
+    with pytest.raises(SceneError, match=r"'loop'.*cross"):
+        scene.add("loop", np.c_[loop, np.zeros(len(loop))], BLACK, faces=[range(len(loop))] if mesh else None)

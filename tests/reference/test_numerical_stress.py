@@ -199,16 +199,17 @@ def test_perfect_parallel_mirrors_have_a_limit():
     assert got[0] == pytest.approx(76.539990123, rel=1e-4)
 
 
-@pytest.mark.xfail(
-    run=False, reason="images in closed mirror rooms grow without bound: no end, no refusal, no cancelling"
-)
 def test_a_closed_box_of_luminous_mirrors_comes_to_an_end():
+    """All light ends on the mirrors, on the black lid, or in chains that are cut off and booked as such."""
     scene = luz.Scene()
     for name, polygon in ROOM.items():
-        scene.add(name, polygon, luz.Material(specular_reflectance=1.0, exitance=100.0))
+        scene.add(name, polygon, luz.Material(specular_reflectance=0.9, exitance=100.0))
     scene.add("lid", [[1.5, 2.5, 3], [2.5, 2.5, 3], [2.5, 1.5, 3], [1.5, 1.5, 3]], BLACK)
-    with pytest.raises(luz.SceneError):
-        prepare_coarse(scene, elements=50, patches=20, bands=8).solve(DARK)
+    assert "deep mirror chains" in {finding.kind for finding in luz.check(scene)}
+    transfer = prepare_coarse(scene, elements=20, patches=5, bands=8, specular_cutoff=1e-2)
+    balance = transfer.solve(DARK).balance
+    ended = sum(balance.absorbed.values()) + balance.truncated
+    assert balance.entering == pytest.approx(7900) and ended == pytest.approx(7900, rel=0.01)
 
 
 @pytest.mark.parametrize(

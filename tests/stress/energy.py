@@ -91,6 +91,34 @@ def lamp_beside_dim_room() -> Outcome:
     return near(floor(5e4), floor(5e-4), 1e-2)
 
 
+def luminous_mirrors() -> Outcome:
+    """A closed box of perfect mirrors that shine, with a black lid: all light ends there, or in chains cut off."""
+    scene = luz.Scene()
+    for name, polygon in box_polygons((4, 4, 3)).items():
+        material = luz.Material() if name == "ceiling" else luz.Material(specular_reflectance=1.0, exitance=100.0)
+        scene.add(name, polygon, material)
+    balance = solved(scene, DARK, bands=8, elements=20, patches=5).balance
+    return near(balance.absorbed["ceiling"] + balance.truncated, balance.entering, 0.05)
+
+
+def white_well(height: float, opening: float = 1.0, mirrored=()) -> Outcome:
+    """All surfaces white or perfect mirrors: a cavity is as bright as the sky, whatever its shape."""
+    low, high = 0.5 - opening / 2, 0.5 + opening / 2
+    white = luz.Material(diffuse_reflectance=1.0)
+    scene = luz.Scene()
+    for name, polygon in box_polygons((1, 1, height)).items():
+        if name != "ceiling":
+            scene.add(name, polygon, luz.Material(specular_reflectance=1.0) if name in mirrored else white)
+    for number, (x, y) in enumerate(
+        (((0, low), (0, 1)), ((high, 1), (0, 1)), ((low, high), (0, low)), ((low, high), (high, 1)))
+    ):
+        if opening < 1:
+            corners = [[x[0], y[1], height], [x[1], y[1], height], [x[1], y[0], height], [x[0], y[0], height]]
+            scene.add(f"ceiling {number}", np.array(corners, float), white)
+    result = solved(scene, EVEN, elements=600, patches=300, bands=40)
+    return near(result.illuminance, np.full(len(result.areas), 1000 * math.pi), GLOBE)
+
+
 def situations() -> Iterator[Situation]:
     def row(name, run, long=False):
         return Situation("energy", name, run, long)
@@ -100,6 +128,11 @@ def situations() -> Iterator[Situation]:
     yield row("a flat closed box of ρ = 0.999", lambda: white_box(0.999, (4, 4, 0.05)))
     yield row("a lamp in a room of ρ = 0.999", lambda: white_room_by_a_lamp(0.999))
     yield row("a closed box of ρ = 1", endless)
+    yield row("a well of ρ = 1", lambda: white_well(2.0))
+    yield row("a deep well of ρ = 1", lambda: white_well(8.0))
+    yield row("a box of ρ = 1 with a hole of 10 cm", lambda: white_well(1.0, 0.1))
+    yield row("a well of white and perfect mirrors", lambda: white_well(2.0, mirrored=("west", "north")))
+    yield row("luminous perfect mirrors with a black lid", luminous_mirrors, True)
     yield row("a pipe of length 5 without loss", lambda: perfect_pipe(5))
     yield row("a pipe of length 20 without loss", lambda: perfect_pipe(20), True)
     for ratio in (1, 4.5, 20):

@@ -2,8 +2,9 @@
 
 import errno
 import io
-import json
+import sys
 
+import fuzz
 import numpy as np
 import pytest
 from builders import UNIFORM, box, prepare_coarse
@@ -49,6 +50,31 @@ def test_cancelling_at_any_stage_leaves_all_as_it_was():
     np.testing.assert_array_equal(transfer.solve(SUNNY).illuminance, usual)
     for name, pieces in before.items():
         np.testing.assert_array_equal(scene.surfaces[name].pieces, pieces)
+
+
+def test_cancelling_a_year_leaves_all_as_it_was():
+    transfer = prepare_coarse(room(), elements=60, bands=8)
+    lights = [SUNNY, UNIFORM, luz.Daylight(sun=luz.Sun(altitude=20, azimuth=80, normal_illuminance=5e4))]
+    usual = transfer.solve_many(lights)
+    for run in (transfer.solve_many, transfer.annual):
+        stages = list(dict.fromkeys(counted(lambda progress, run=run: run(lights, progress=progress))))
+        assert stages
+        for stop in stages:
+            with pytest.raises(luz.Cancelled, match="Cancelled"):
+                run(lights, progress=lambda fraction, stage, stop=stop: stage != stop)
+    np.testing.assert_array_equal(transfer.solve_many(lights), usual)
+
+
+def test_cancelling_leaves_no_cache_behind(tmp_path):
+    path = tmp_path / "kept"
+    stages = list(
+        dict.fromkeys(counted(lambda p: prepare_coarse(room(), elements=60, bands=8, progress=p, cache=path)))
+    )
+    path.unlink()
+    for stop in stages[:-1]:
+        with pytest.raises(luz.Cancelled):
+            prepare_coarse(room(), elements=60, bands=8, cache=path, progress=lambda f, stage, stop=stop: stage != stop)
+        assert not list(tmp_path.iterdir())
 
 
 def test_a_progress_that_fails_is_not_swallowed():
@@ -113,6 +139,53 @@ def test_no_memory_says_so_and_harms_nothing(monkeypatch):
     assert prepare_coarse(scene, elements=60, bands=8).solve(UNIFORM).illuminance.min() > 0
 
 
+def test_no_memory_while_solving_leaves_the_transfer_whole(monkeypatch):
+    transfer = prepare_coarse(room(), elements=60, bands=8)
+    usual = transfer.solve(SUNNY).illuminance
+
+    def exhausted(*args, **options):
+        raise MemoryError("Unable to allocate 9 TiB")
+
+    for name in ("gather_patches", "gather_sources", "follow_sun"):
+        with monkeypatch.context() as patch:
+            patch.setattr(sys.modules["luzespecular.solve"], name, exhausted)
+            with pytest.raises(MemoryError, match="Unable to allocate"):
+                transfer.solve(SUNNY)
+    np.testing.assert_array_equal(transfer.solve(SUNNY).illuminance, usual)
+
+
+def test_no_memory_while_saving_leaves_the_old_file(tmp_path, monkeypatch):
+    transfer, path = prepare_coarse(room(), elements=60, bands=8), tmp_path / "kept"
+    path.write_text("what was there", encoding="utf-8")
+
+    def exhausted(file, **arrays):
+        file.write(b"half of it")
+        raise MemoryError("Unable to allocate 9 TiB")
+
+    monkeypatch.setattr(np, "savez", exhausted)
+    with pytest.raises(MemoryError, match="Unable to allocate"):
+        transfer.save(path)
+    assert path.read_text(encoding="utf-8") == "what was there" and len(list(tmp_path.iterdir())) == 1
+
+
+@pytest.mark.parametrize("damage", ["whole", "cut off", "bytes", "empty"])
+def test_tables_are_never_taken_for_scenes_or_transfers(tmp_path, damage):
+    """Nothing reads the tables that are written: given where a scene or a cache is wanted, they are refused by name."""
+    path = files.write_csv(tmp_path / "lux.csv", ["surface", "lux"], [["floor", float(k)] for k in range(50)])
+    content = path.read_bytes()
+    path.write_bytes(
+        {"whole": content, "cut off": content[:77], "bytes": content[:40] + bytes(range(128, 255)), "empty": b""}[
+            damage
+        ]
+    )
+    given = path.read_bytes()
+    with pytest.raises(luz.SceneError, match=r"lux\.csv"):
+        files.read_scene(path)
+    with pytest.raises(luz.TransferFileError, match=r"lux\.csv"):
+        luz.load(path, room())
+    assert path.read_bytes() == given
+
+
 def test_a_scene_changed_while_it_is_solved_counts_as_it_was():
     scene = room()
     usual = prepare_coarse(scene, elements=60, bands=8).solve(SUNNY).illuminance
@@ -128,46 +201,25 @@ def test_a_scene_changed_while_it_is_solved_counts_as_it_was():
     np.testing.assert_allclose(result.illuminance, usual, rtol=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(60))
-def test_damaged_scene_files_are_refused_or_sound(tmp_path, seed):
-    """Random bytes in a good file: a scene, or a refusal that names the file."""
-    rng = np.random.default_rng(seed)
-    content = {
-        "materials": {"white": {"diffuse_reflectance": 0.5}},
-        "surfaces": [
-            {"name": "floor", "material": "white", "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]},
-            {
-                "name": "mesh",
-                "material": "white",
-                "vertices": [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
-                "faces": [[0, 1, 2], [0, 2, 3]],
-            },
-        ],
-    }
-    text = bytearray(json.dumps(content).encode())
-    for place in rng.integers(0, len(text), 1 + seed % 5):
-        text[place] = rng.integers(0, 256)
-    path = tmp_path / "scene.json"
-    path.write_bytes(bytes(text[: len(text) - (seed % 3) * int(rng.integers(0, 100))]))
-    try:
-        luz.check(files.read_scene(path).scene)
-    except luz.SceneError as error:
-        assert "scene.json" in str(error)
+@pytest.mark.parametrize("kind", range(len(set(fuzz.TRIALS))))
+def test_random_input_is_refused_or_sound(tmp_path, kind):
+    """Some hundred trials of benchmarks/fuzz.py, which runs any number of them."""
+    mine = [number for number in range(1200) if fuzz.TRIALS[number % len(fuzz.TRIALS)] is sorted_trials()[kind]]
+    for number in mine[:30]:
+        fuzz.trial(number, tmp_path)
 
 
-@pytest.mark.parametrize("seed", range(60))
-def test_random_meshes_are_refused_or_sound(seed):
-    rng = np.random.default_rng(seed)
-    vertices = rng.normal(size=(rng.integers(3, 12), 3)) * 10.0 ** rng.integers(-8, 9)
-    if seed % 2:
-        vertices = np.rint(rng.normal(size=vertices.shape) * 2)
-    faces = [rng.integers(0, len(vertices), rng.integers(3, 7)).tolist() for _ in range(rng.integers(1, 15))]
-    scene = luz.Scene()
-    try:
-        scene.add("mesh", vertices, GREY, faces=faces, two_sided=bool(seed % 3))
-    except luz.SceneError as error:
-        assert "'mesh'" in str(error)
-        return
-    for finding in luz.check(scene):
-        assert (finding.faces < len(faces)).all() and (finding.faces >= 0).all()
-    assert scene.surfaces["mesh"].source_faces.max() < len(faces)
+def sorted_trials():
+    return sorted(set(fuzz.TRIALS), key=lambda trial: trial.__name__)
+
+
+@pytest.mark.parametrize(
+    ("kind", "number"),
+    [
+        *(("one_polygon", number) for number in (5, 63, 194, 8927, 9750, 14966)),
+        *(("mesh", number) for number in (10139, 11065, 14365, 18193)),
+    ],
+)
+def test_trials_that_found_something(tmp_path, kind, number):
+    """Loops that cross at corners; spikes, which gave no light at all; coarse meshes of less light than none."""
+    fuzz.one_of(getattr(fuzz, kind), number, tmp_path)
