@@ -24,7 +24,7 @@ from .translations import solver_message
 _log = logging.getLogger(__name__)
 
 _TICK = 0.01  # seconds between looks at a job on its way
-_REST = 0.4  # seconds without a change after which a quick result is settled
+_REST = 0.4  # seconds without a change, and since a quick result is seen, after which it is settled
 _AT_ONCE = 0.15  # a solution that took no longer may hold up playback
 _CHEAP = 0.01  # a look at the scene that took no longer is taken again before results are shown
 _QUICK_TOLERANCE = 0.02
@@ -45,7 +45,7 @@ class Live:
         self._job: Job | None = None
         self._quick = False
         self._wanted = False
-        self._changed_at = 0.0
+        self._moved_at = 0.0
         self._verified_at = 0.0
         self._seconds = 0.0
         self._verifying = 0.0
@@ -84,7 +84,7 @@ class Live:
 
     def want(self) -> None:
         """Note that the settings changed."""
-        self._wanted, self._changed_at = True, time.monotonic()
+        self._wanted, self._moved_at = True, time.monotonic()
 
     def advance(self) -> bool:
         """Do the next thing that is to be done; tell whether there is more to come."""
@@ -132,7 +132,7 @@ class Live:
 
     def _begin(self, scene: bpy.types.Scene) -> bool:
         now = time.monotonic()
-        settle = self._quick and not self._wanted and now - self._changed_at > _REST
+        settle = self._quick and not self._wanted and now - self._moved_at > _REST
         if not (self._wanted or settle):
             return self._quick
         if bpy.context.mode.startswith("EDIT"):  # attributes cannot be written there
@@ -187,6 +187,7 @@ class Live:
             self._seconds = job.elapsed
             self._study = replace(job.study, solving=self._study.solving)
             study.show(scene, job.study, job.result, None if self._quick else job.readings)
+            self._moved_at = time.monotonic()  # who drags by what is seen needs a moment
             _tell("")
 
 

@@ -86,6 +86,7 @@ class LUZESPECULAR_PT_colours(_PartOfResults, bpy.types.Panel):
         row.active = display.shows_fine(context.scene)
         row.prop(settings, "show_backs")
         column.prop(settings, "in_renders")
+        self.layout.operator("luzespecular.save_picture", icon="IMAGE_DATA")
 
 
 class LUZESPECULAR_PT_lines(_PartOfResults, bpy.types.Panel):

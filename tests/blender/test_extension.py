@@ -193,6 +193,14 @@ def test_panels_draw_in_every_state(addon, bpy, make):
     draw_all()
 
 
+def test_every_button_stands_in_a_panel(addon):
+    folder = ROOT / "luzespecular_addon" / "panels"
+    drawn = "".join(path.read_text(encoding="utf-8") for path in folder.glob("*.py"))
+    names = [cls.bl_idname for room in addon.operators._ROOMS for cls in room.CLASSES if hasattr(cls, "bl_label")]
+    assert len(names) > 15
+    assert not [name for name in names if f'"{name}"' not in drawn]
+
+
 class _Context:
     """A context with an object and a material, as in the properties editor."""
 

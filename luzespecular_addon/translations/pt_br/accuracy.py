@@ -49,7 +49,7 @@ TEXTS = {
     "Chains of mirrors and panes are followed down to this product of reflectances": (
         "Cadeias de espelhos e vidros são seguidas até este produto de refletâncias"
     ),
-    "Threads": "Linhas de execução",
+    "Threads": "Threads",
     "Threads of the solver; 0 for as many as the machine has cores": (
         "Linhas de execução do cálculo; 0 para tantas quantos os núcleos do computador"
     ),

@@ -47,7 +47,7 @@ TEXTS = {
     "Minimum": "Mínimo",
     "Mean": "Média",
     "Maximum": "Máximo",
-    "Uniformity (min/mean)": "Uniformidade (mín/média)",
+    "Uniformity (min/mean)": "Unif. (mín/méd)",
     "Area": "Área",
     "Mean daylight factor": "Fator médio de luz diurna",
     "{threshold} lx or more": "{threshold} lx ou mais",
