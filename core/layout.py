@@ -66,7 +66,7 @@ def _stretches(count: int, contacts: np.ndarray, passed: np.ndarray, spacing: in
     inside = np.unique(np.round(contacts[(contacts > ON_LINE) & (contacts < count - ON_LINE)], 6))
     if len(inside) > _MOST_BREAKS:
         inside = inside[:0]
-    low = np.floor(inside + ON_LINE).astype(int)
+    low = np.minimum(np.floor(inside + ON_LINE).astype(int), count - 1)
     cut = low[np.abs(inside - np.rint(inside)) > ON_LINE]  # in the middle of a cell
     whole = np.rint(inside).astype(int)[np.isin(low, cut, invert=True)]
     borders = np.unique(np.concatenate([[0, count], whole, cut, cut + 1]))

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from layout_samples import BLACK, WHITE, geometry_of, shelf, wall, wall_and
 
 import luzespecular as luz
+from luzespecular import layout as layout_module
 
 
 def layout_of(*shelves):
@@ -133,3 +134,12 @@ def test_only_runs_of_cells_have_layouts():
     scene.add("triangle", [[0, 0, 0], [1, 0, 0], [0, 1, 0]], WHITE)
     scene.add("chip", [[0, 0, 1], [0.1, 0, 1], [0.1, 0.1, 1], [0, 0.1, 1]], WHITE)
     assert geometry_of(scene).lattices == []
+
+
+@pytest.mark.parametrize("gap", [1e-7, 9e-7, 1.1e-6, 1.4e-6, 2e-6, 1e-3])
+@pytest.mark.parametrize("count", [1, 5, 7])
+def test_stretches_fill_a_run_however_close_to_its_end_things_touch(gap, count):
+    """Found by a pane a micrometre before a wall: one stretch more than there were cells."""
+    for place in (gap, count - gap):
+        stretches = layout_module._stretches(count, np.array([place]), np.zeros(0), 1)
+        assert sum(cells for _, cells in stretches) == count and min(cells for _, cells in stretches) > 0

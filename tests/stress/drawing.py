@@ -76,6 +76,20 @@ def panes_in_parts() -> Outcome:
     return near(other, one, 2e-3)
 
 
+def clear_before_a_wall(distance: float) -> Outcome:
+    """A pane that lets all light through, next to nothing before a wall: as without it."""
+
+    def lux(**more) -> np.ndarray:
+        scene = luz.Scene()
+        for name, wall in ROOM.items():
+            scene.add(name, wall, GREY)
+        for name, polygon in more.items():
+            scene.add(name, polygon, luz.Material(regular_transmittance=1.0))
+        return solved(scene, EVEN, elements=200, patches=100, bands=30).at(POINTS, NORMALS)
+
+    return near(lux(pane=ROOM["west"] + [distance, 0, 0]), lux(), 5e-3)
+
+
 def sliver_that_shines() -> Outcome:
     """A lamp of 1 m × 1 µm: the integral along a line."""
     scene = luz.Scene()
@@ -205,6 +219,8 @@ def situations() -> Iterator[Situation]:
     yield row("a hole by a bridge", lambda: hole_by_a_bridge(False))
     yield row("a hole by a bridge in a mesh", lambda: hole_by_a_bridge(True), True)
     yield row("panes that meet in a T", panes_in_parts)
+    for distance in (1e-6, 1e-3):
+        yield row(f"a clear pane {distance:g} m before a wall", lambda d=distance: clear_before_a_wall(d))
     yield row("a lamp of aspect 1e6", sliver_that_shines)
     yield row("a floor bent by 1e-6", lambda: floor_in_halves(2e-6))
     for width in (0.03, 1e-3):
