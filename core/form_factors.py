@@ -156,18 +156,15 @@ def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, 
     """Fill the rows of some nodes."""
     # so many that receivers times beams stay in cache
     most = max(8, _CHUNK_CELLS // max(geometry.targets.globe.count // 2, 1))
-    chunks = [
-        members[c] for c in chunks_of_receivers(nodes.points[members], nodes.sheet[members], geometry.planes, most)
-    ]
-    for chunk in chunks:
-        sheet = int(nodes.sheet[chunk[0]])
+    sheets = nodes.sheet
+    chunks = [members[c] for c in chunks_of_receivers(nodes.points[members], sheets[members], geometry.planes, most)]
+
+    def work(chunk: np.ndarray, checkpoint) -> None:
+        sheet = int(sheets[chunk[0]])
         if sheet not in sights:
             normal = geometry.element_normals[nodes.element[chunk[0]]]
             sights[sheet] = sight_of(geometry, limits, normal, float(normal @ nodes.points[chunk[0]]))
-
-    def work(chunk: np.ndarray, checkpoint) -> None:
-        sight = sights[int(nodes.sheet[chunk[0]])]
-        rows.put(chunk, gather(sight, nodes.points[chunk], geometry.targets, checkpoint))
+        rows.put(chunk, gather(sights[sheet], nodes.points[chunk], geometry.targets, checkpoint))
 
     run_parallel(work, chunks, threads, report)
 

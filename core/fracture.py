@@ -231,6 +231,11 @@ class Fracture:
         return block, np.concatenate(middle)
 
     @property
+    def element_surface(self) -> np.ndarray:
+        """(e,) int: surface of each element."""
+        return np.concatenate([self.face_surface, self.face_surface[self.back_of]])[self.element_side]
+
+    @property
     def sides(self) -> int:
         """Number of fronts and backs."""
         return len(self.faces) + len(self.back_of)

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .clusters import MANY_FACETS
 from .errors import SceneError
 from .fracture import Fracture, fracture
 from .gather import Targets
@@ -17,7 +18,7 @@ from .patches import make_patches
 from .planes import Planes
 from .scene import Scene
 from .solids import find_solids
-from .specular import ChainLimits, GroupSight, Outlines
+from .specular import MANY_OUTLINES, ChainLimits, GroupSight, Outlines
 
 PATCHES = 1_000
 """Patches that exitance is resolved in, about; runs of cells get more where light is uneven."""
@@ -153,6 +154,8 @@ def make_geometry(
     two_sided = np.array([s.two_sided for s in surfaces])
     wanted = np.array([receivers is None or s.name in receivers for s in surfaces])
     cuts = fracture(planes, cut, reflects, two_sided, max_area, times, wanted, emits)
+    if len(cuts.grids) > MANY_FACETS // 2:  # cells of meshes, too many for lattices of their own
+        cuts = replace(cuts, grids=tuple(grid for grid in cuts.grids if grid.rows * grid.columns > 1))
     points = cuts.elements.mean(axis=1)
     fronts = len(planes.sheet_surface)
     surface = planes.sheet_surface[cuts.element_sheet % fronts]
@@ -173,7 +176,9 @@ def make_geometry(
         materials=[surfaces[k].material for k in outline_surface],
         two_sided=two_sided[outline_surface],
         tolerance=max(1e-10 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
-        solids=find_solids(planes, np.array([not s.material.is_transparent for s in surfaces])),
+        solids=find_solids(planes, np.array([not s.material.is_transparent for s in surfaces]))
+        if len(planes.outlines) <= MANY_OUTLINES
+        else None,  # single rays stop at the nearest outline anyway
     )
     return Geometry(
         planes,

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import polygons
+from .clusters import MANY_FACETS, clustered
 from .fracture import Fracture
 from .interpolation import lagrange
 from .layout import Layout
@@ -35,6 +36,12 @@ _BESIDE = 0.12
 
 _FEWEST_OWN = 1_000
 """Elements in doubt that may always have receivers of their own; no more than the lattice has where that is more."""
+
+_FACET = 2
+"""Elements of a plane that counts as a facet."""
+
+_SHARED = 10_000
+"""Receivers that they share where there are more, about."""
 
 _MOST_SPLITS = 3
 _FEWEST_SPLITS = 100
@@ -161,6 +168,10 @@ class Nodes:
         for lattice in lattices:
             entries.own(*_pieces(fracture.elements, lattice))
         single = np.flatnonzero(alone)
+        facets = np.bincount(fracture.element_sheet[single])[fracture.element_sheet[single]] <= _FACET
+        if np.count_nonzero(facets) > MANY_FACETS:
+            entries.shared(single[facets], fracture)
+            single = single[~facets]
         entries.own(single, fracture.elements[single].mean(axis=1), np.ones(len(single)))
         return entries.nodes(fracture.element_sheet)
 
@@ -398,6 +409,18 @@ class _Entries:
     def own(self, element, points, weight) -> None:
         """Nodes that serve one element each."""
         entry = (element, self.add(points, element), weight)
+        self.weights.append(entry)
+        self.around.append(entry)
+
+    def shared(self, element, fracture: Fracture) -> None:
+        """Nodes that serve several elements each, which lie beside each other and face alike."""
+        corners, points = fracture.elements[element], fracture.elements[element].mean(axis=1)
+        normals = polygons.newell_normal(corners)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        behind = fracture.element_side[element] >= len(fracture.faces)
+        normals = np.where(behind[:, None], -normals, normals)
+        group, middle = clustered(points, normals, fracture.element_surface[element], _SHARED)
+        entry = (element, self.add(points[middle], element[middle])[group], np.ones(len(element)))
         self.weights.append(entry)
         self.around.append(entry)
 

@@ -55,24 +55,36 @@ def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[fl
     ``report`` is called with the share of tasks done, and often enough for a user to stop a long one. Where it raises,
     tasks under way stop at their next checkpoint and the exception goes on to the caller.
     """
-    stop = threading.Event()
+    if not tasks:
+        return
+    stop, lock, left = threading.Event(), threading.Lock(), iter(tasks)
+    done = 0
 
     def checkpoint() -> None:
         if stop.is_set():
             raise Cancelled("Cancelled")
 
+    def run() -> None:
+        nonlocal done
+        while True:
+            checkpoint()
+            with lock:
+                try:
+                    task = next(left)
+                except StopIteration:
+                    return
+            work(task, checkpoint)
+            with lock:
+                done += 1
+
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        pending = {pool.submit(work, task, checkpoint) for task in tasks}
+        pending = {pool.submit(run) for _ in range(min(threads, len(tasks)))}
         try:
-            done = 0
             while pending:
                 finished, pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED)
                 for future in finished:
                     future.result()
-                done += len(finished)
                 report(done / len(tasks))
         except BaseException:
             stop.set()
-            for future in pending:
-                future.cancel()
             raise

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,10 +13,17 @@ from .arrays import dots
 
 _FEW = 48
 _LEAF = 4
+
+_SUBTREE = 12
+"""Levels of the tree below boxes that rays go through one after the other, nearest first."""
+
 _MISS = -1
 
 _BLOCK = 80_000
 """Rays times outlines that are looked at together: they stay in cache."""
+
+_BLOCK_OF_TREE = 8000
+"""Rays that go down the tree together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +143,7 @@ class RayScene:
         return flight
 
     def _blocks(self, count: int) -> list[slice]:
-        step = max(1, _BLOCK // max(len(self.vertices), 1))
+        step = _BLOCK // max(len(self.vertices), 1) if len(self.vertices) <= _FEW else _BLOCK_OF_TREE
         return [slice(first, first + step) for first in range(0, count, step)]
 
     def _fly(self, flight: Flight, first: int, points, directions, brightness, left, reflectance, cutoff) -> None:
@@ -172,8 +180,11 @@ class RayScene:
         outline = np.full(points.shape[1], _MISS)
         distance = np.full(points.shape[1], np.inf)
         points, directions = np.ascontiguousarray(points.T), np.ascontiguousarray(directions.T)
-        for ray, candidate in self._tree.candidates(points, directions):
+
+        def meet(ray: np.ndarray, candidate: np.ndarray) -> None:
             self._meet(ray, candidate, points, directions, outline, distance)
+
+        self._tree.search(points, directions, distance, meet)
         return outline, distance
 
     def _first_of_few(self, points, directions) -> tuple[np.ndarray, np.ndarray]:
@@ -266,27 +277,62 @@ class _Tree:
             boxes.insert(0, np.stack([below[:, :, 0].min(axis=1), below[:, :, 1].max(axis=1)], axis=1))
         return cls(padded, boxes)
 
-    def candidates(self, points, directions):
-        """Pairs of ray and outline whose leaf's box the ray meets."""
+    def search(self, points, directions, distance, meet: Callable[[np.ndarray, np.ndarray], None]) -> None:
+        """Find outlines that rays may meet, nearest boxes first.
+
+        Parameters
+        ----------
+        points, directions : (n, 3) float
+        distance : (n,) float
+            To the nearest hit so far: what is farther is not looked at.
+        meet : callable(ray, outline)
+            Called with pairs whose leaf's box the ray meets; lowers ``distance``.
+        """
         with np.errstate(divide="ignore"):
             inverse = 1.0 / np.where(directions == 0, 1e-300, directions)
-        ray = np.arange(len(points))
-        node = np.zeros(len(points), np.int64)
-        for level, boxes in enumerate(self.boxes):
+        rays = points, inverse, distance
+        first = max(1, len(self.boxes) - _SUBTREE)
+        every = np.arange(len(points))
+        ray, node, enter = self._down(rays, every, np.zeros(len(points), np.int64), range(first))
+        order = np.lexsort((enter, ray))
+        ray, node, enter = ray[order], node[order], enter[order]
+        turn = np.arange(len(ray)) - np.searchsorted(ray, ray)
+        level = np.frexp(turn + 1.0)[1]  # the first, the next two, the next four ...
+        for now in range(1, int(level.max(initial=0)) + 1):
+            mine = np.flatnonzero((level == now) & (enter < distance[ray]))
+            if not len(mine):
+                continue
+            below = np.repeat(2 * node[mine], 2) if first < len(self.boxes) else node[mine]
+            if first < len(self.boxes):
+                below[1::2] += 1
+            some, leaf, _ = self._down(
+                rays, np.repeat(ray[mine], len(below) // len(mine)), below, range(first, len(self.boxes))
+            )
+            for k in range(_LEAF):
+                candidate = self.order[leaf * _LEAF + k]
+                real = candidate >= 0
+                meet(some[real], candidate[real])
+
+    def _down(self, rays, ray, node, levels: range):
+        """Pairs of ray and box on the last of some levels that are met before what is known; and how far they are."""
+        points, inverse, distance = rays
+        enter = np.zeros(len(ray))
+        for level in levels:
+            boxes = self.boxes[level].take(node, axis=0)
+            start, factor = points.take(ray, axis=0), inverse.take(ray, axis=0)
             with np.errstate(invalid="ignore", over="ignore"):
-                a = (boxes[node, 0] - points[ray]) * inverse[ray]
-                b = (boxes[node, 1] - points[ray]) * inverse[ray]
-            enter, leave = np.minimum(a, b).max(axis=1), np.maximum(a, b).min(axis=1)
-            met = (leave >= enter) & (leave > 0)
-            ray, node = ray[met], node[met]
-            if level + 1 < len(self.boxes):
-                ray = np.repeat(ray, 2)
-                node = np.repeat(node * 2, 2)
+                a = (boxes[:, 0] - start) * factor
+                b = (boxes[:, 1] - start) * factor
+            near, far = np.minimum(a, b), np.maximum(a, b)
+            enter = np.maximum(np.maximum(near[:, 0], near[:, 1]), near[:, 2])
+            leave = np.minimum(np.minimum(far[:, 0], far[:, 1]), far[:, 2])
+            met = (leave >= enter) & (leave > 0) & (enter < distance[ray])
+            met &= boxes[:, 0, 0] <= boxes[:, 1, 0]  # empty boxes have no sides
+            ray, node, enter = ray[met], node[met], enter[met]
+            if level + 1 < levels.stop:
+                ray, node = np.repeat(ray, 2), np.repeat(2 * node, 2)
                 node[1::2] += 1
-        for k in range(_LEAF):
-            candidate = self.order[node * _LEAF + k]
-            real = candidate >= 0
-            yield ray[real], candidate[real]
+        return ray, node, enter
 
 
 def _morton(points: np.ndarray) -> np.ndarray:

@@ -91,8 +91,11 @@ def find_solids(planes: Planes, opaque: np.ndarray) -> Solids:
     body = _bodies(planes.given, planes.given_counts, tight, _SAME_PLACE * planes.size)
     found: list[Solid] = []
     number = np.full(int(body.max(initial=-1)) + 1, -1)
-    for k in np.flatnonzero(np.bincount(body[body >= 0]) >= _FEWEST_FACETS):
-        mine = np.flatnonzero(body == k)
+    order = np.argsort(body, kind="stable")
+    for mine in np.split(order, np.flatnonzero(np.diff(body[order])) + 1):
+        k = body[mine[0]] if len(mine) else -1
+        if k < 0 or len(mine) < _FEWEST_FACETS:
+            continue
         pieces, counts = planes.given[mine], planes.given_counts[mine]
         fans = [pieces[counts > j + 1][:, [0, j, j + 1]] for j in range(1, pieces.shape[1] - 1)]
         triangles = np.concatenate(fans)

@@ -5,7 +5,7 @@ import pytest
 from builders import box_polygons, first_hits
 
 from luzespecular import polygons
-from luzespecular.rays import RayScene
+from luzespecular.rays import RayScene, _Tree
 
 
 def ray_scene(outlines):
@@ -106,3 +106,17 @@ def test_flights_are_what_single_steps_make_of_them(outside):
     np.testing.assert_allclose(flight.directions, way, atol=1e-11)
     np.testing.assert_array_equal(flight.outline[~faint], outline[~faint])
     np.testing.assert_allclose(flight.distance[~faint], distance[~faint], rtol=1e-9)
+
+
+@pytest.mark.parametrize("count", [49, 65, 100, 300])
+def test_empty_leaves_of_the_tree_are_never_gone_down(count):
+    """Whatever the number of outlines leaves of room in the tree: rays meet few of its boxes."""
+    rng = np.random.default_rng(count)
+    corners = rng.uniform(-1, 1, (count, 1, 3)) + 0.01 * rng.normal(size=(count, 3, 3))
+    tree = _Tree.over(corners, 1e-9)
+    points, directions = rng.uniform(-1, 1, (200, 3)), rng.normal(size=(200, 3))
+    met = []
+    tree.search(points, directions, np.full(200, np.inf), lambda ray, outline: met.append(len(ray)))
+    assert sum(met) < 0.2 * count * len(points)
+    empty = sum(int((boxes[:, 0] > boxes[:, 1]).any(axis=1).sum()) for boxes in tree.boxes)
+    assert empty > 0
