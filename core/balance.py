@@ -51,7 +51,7 @@ def lumen_balance(result: Result) -> Balance:
     """Balance of a result on its elements; see `Balance`."""
     transfer, components = result.transfer, result.field.components
     geometry = transfer.geometry
-    area, surface = geometry.fracture.element_areas, geometry.element_surface
+    area, surface = geometry.areas, geometry.element_surface
     absorptance, reflectance = (
         geometry.of_elements(name) for name in ("hemispherical_absorptance", "diffuse_reflectance")
     )

@@ -145,7 +145,7 @@ def find_coefficients(
     def follow(one: int, checkpoint: Callable[[], None]) -> None:
         sunlight = trace_sun(geometry.outlines, suns[one], 1.0, transfer.limits.cutoff, checkpoint)
         direct, by_mirrors = sunlight.on_elements(
-            geometry.fracture.elements, geometry.fracture.element_sheet, geometry.planes.outline_sheet
+            geometry.fracture.elements, geometry.lit_side, geometry.planes.outline_sheet
         )
         on_patches[one] = means_over_patches(geometry, direct + by_mirrors)
         lumens[one] = stays.elements @ (direct + by_mirrors)
@@ -217,7 +217,7 @@ class _Stays:
 
     def __init__(self, transfer: Transfer) -> None:
         geometry, conservation = transfer.geometry, transfer.conservation
-        area, share = geometry.fracture.element_areas, geometry.of_elements("diffuse_reflectance")
+        area, share = geometry.areas, geometry.of_elements("diffuse_reflectance")
         self.elements = area * share * (1 - conservation.lost)
         self.nodes = transfer.nodes.weights.gathered(self.elements, len(transfer.nodes.points))
         self.kept = transfer.nodes.weights.gathered(conservation.kept, len(transfer.nodes.points))

@@ -69,7 +69,7 @@ class ConvexRoom:
     @classmethod
     def around(cls, geometry: Geometry, patches: Patches) -> ConvexRoom:
         """A room that is known to be one, in these patches."""
-        offsets = np.empty(len(geometry.planes.sheet_normal))
+        offsets = np.full(len(geometry.planes.sheet_normal), np.nan)  # doubles are no part of such a room
         offsets[geometry.planes.outline_sheet] = geometry.outlines.offsets
         patch = np.where(patches.of_element < 0, patches.count, patches.of_element)
         sheet = geometry.fracture.element_sheet

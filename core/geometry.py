@@ -87,11 +87,26 @@ class Geometry:
         """(e,) float: a property of the elements' materials."""
         return np.array([getattr(m, name) for m in self.surface_materials], float)[self.element_surface]
 
+    @cached_property
+    def shown(self) -> np.ndarray:
+        """(e,) bool: elements that light meets: all but those of doubled sheets, which show what the others get."""
+        return self.lit_side == self.fracture.element_sheet
+
+    @cached_property
+    def lit_side(self) -> np.ndarray:
+        """(e,) int: the side whose light each element gets."""
+        return self.planes.stands_for[self.fracture.element_sheet]
+
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """(e,) float: the elements' areas, those of doubles counted once [m²]."""
+        return np.where(self.shown, self.fracture.element_areas, 0.0)
+
     @property
     def areas_kept(self) -> np.ndarray:
         """(e,) float: elements' areas times the share of light that mirrors and panes do not pass on [m²]."""
         shares = self.of_elements("hemispherical_absorptance") + self.of_elements("diffuse_reflectance")
-        return self.fracture.element_areas * shares
+        return self.areas * shares
 
     def patch_sums(self, values: np.ndarray) -> np.ndarray:
         """(p,) float: sums over each patch's elements of values ``(e,)``."""
@@ -162,7 +177,7 @@ def make_geometry(
     normals = (
         planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
     )
-    active = (reflects | emits)[surface]
+    active = (reflects | emits)[surface] & (planes.stands_for[cuts.element_sheet] == cuts.element_sheet)
     lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes) for grid in cuts.grids]
     patches = make_patches(
         planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, round(PATCHES * times), lattices

@@ -206,6 +206,8 @@ def _targets(outlines: Outlines, elements, element_sheet, outline_sheet) -> Iter
     members = [order[a:b] for a, b in itertools.pairwise(bounds)]
     for number in range(sheets):
         mine = np.flatnonzero(outline_sheet == number)
+        if not len(mine):
+            continue  # a double of another
         normal, offset = outlines.normals[mine[0]], float(outlines.offsets[mine[0]])
         material = outlines.materials[mine[0]]
         both = outlines.two_sided[mine[0]] or material.reflects_both_sides

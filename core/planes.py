@@ -39,6 +39,9 @@ class Planes:
         In-plane axes, along the sheet's longest edge.
     outlines, outline_sheet : (o, w, 3) float, padded, and (o,) int
         Convex polygons that block the view.
+    stands_for : (2 s,) int
+        Of s sheets, side k is the front of sheet k, side s + k its back: the side that light meets there. Its own but
+        for doubled sheets, whose outlines are left out (see `doubles.seen_once`).
     """
 
     centre: np.ndarray
@@ -53,6 +56,7 @@ class Planes:
     sheet_axes: np.ndarray
     outlines: np.ndarray
     outline_sheet: np.ndarray
+    stands_for: np.ndarray
 
 
 def find_planes(scene: Scene) -> Planes:
@@ -82,6 +86,7 @@ def find_planes(scene: Scene) -> Planes:
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         offset = np.einsum("mc,mc->m", normal, pieces.mean(axis=1))
         key = np.concatenate([np.rint(normal / _SAME_NORMAL), np.rint(offset / (1e-7 * size))[:, None]], axis=1)
+        key = np.concatenate([key, _copies(pieces, 1e-7 * size)[:, None]], axis=1)
         _, first, sheet = np.unique(key, axis=0, return_index=True, return_inverse=True)
         sheet = sheet.reshape(-1)
         given += list(zip(pieces, surface.counts, strict=True))
@@ -114,7 +119,24 @@ def find_planes(scene: Scene) -> Planes:
         sheet_axes=_sheet_axes(np.array(sheet_normal), blocked, outline_sheet),
         outlines=blocked,
         outline_sheet=outline_sheet,
+        stands_for=np.arange(2 * len(sheet_surface)),
     )
+
+
+def _copies(pieces: np.ndarray, tolerance: float) -> np.ndarray:
+    """(m,) int: how many earlier pieces each is a copy of, by middle and extent: copies are sheets of their own."""
+    measures = np.concatenate([pieces.min(axis=1), pieces.max(axis=1), pieces.sum(axis=1) / pieces.shape[1]], axis=1)
+    numbers = np.rint(measures / tolerance).astype(np.int64).view(np.uint64)
+    mixed = np.zeros(len(pieces), np.uint64)
+    for column in numbers.T:  # after Fowler, Noll & Vo
+        mixed = (mixed ^ column) * np.uint64(0x9E3779B97F4A7C15)
+        mixed ^= mixed >> np.uint64(29)
+    _, of, counts = np.unique(mixed, return_inverse=True, return_counts=True)
+    rank = np.zeros(len(pieces), np.int64)
+    if counts.max() > 1:
+        order = np.argsort(of.reshape(-1), kind="stable")
+        rank[order] = np.arange(len(order)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return rank
 
 
 def _sheet_axes(normals: np.ndarray, outlines: np.ndarray, outline_sheet: np.ndarray) -> np.ndarray:

@@ -46,7 +46,7 @@ def needless(geometry: Geometry, sees_out: bool, unhidden: bool) -> Iterator[tup
 def _hidden_pairs(geometry: Geometry) -> tuple[int, int]:
     """Outlines that lie wholly behind a receivers' plane, summed over these planes, and all pairs of the two."""
     outlines, planes, fronts = geometry.outlines, geometry.planes, len(geometry.planes.sheet_surface)
-    hidden, sheets = 0, np.unique(geometry.fracture.element_sheet)
+    hidden, sheets = 0, np.unique(geometry.lit_side)
     for sheet in sheets:
         own = int(np.flatnonzero(planes.outline_sheet == sheet % fronts)[0])
         side = -1.0 if sheet >= fronts else 1.0

@@ -157,10 +157,10 @@ def follow_sun(geometry: Geometry, sun, cutoff: float, checkpoint) -> tuple[Sunl
     cuts, outlines, outline_sheet = geometry.fracture, geometry.outlines, geometry.planes.outline_sheet
     sunlight: Sunlight
     if sun.disc:
-        sunlight = trace_disc(outlines, sun, cuts.elements, cuts.element_sheet, outline_sheet, cutoff, checkpoint)
+        sunlight = trace_disc(outlines, sun, cuts.elements, geometry.lit_side, outline_sheet, cutoff, checkpoint)
     else:
         sunlight = trace_sun(outlines, np.asarray(sun.direction), sun.normal_illuminance, cutoff, checkpoint)
-    return sunlight, sunlight.on_elements(cuts.elements, cuts.element_sheet, outline_sheet)
+    return sunlight, sunlight.on_elements(cuts.elements, geometry.lit_side, outline_sheet)
 
 
 def sky_column(targets: Targets, light: Daylight) -> np.ndarray:
@@ -324,9 +324,9 @@ def gather_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:
 def brought_home(transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray) -> tuple[np.ndarray, float]:
     """Illuminance that elements of exitance ``(e,)`` cause, made to sum to it where none escapes; lumens out by."""
     conservation = transfer.conservation
-    sent = float((transfer.geometry.fracture.element_areas * exitance) @ (1 - conservation.lost))
+    sent = float((transfer.geometry.areas * exitance) @ (1 - conservation.lost))
     missing = sent - float(conservation.kept @ illuminance)
-    if float((transfer.geometry.fracture.element_areas * exitance) @ conservation.lost) > _CLOSED * sent:
+    if float((transfer.geometry.areas * exitance) @ conservation.lost) > _CLOSED * sent:
         return illuminance, missing  # the globe knows what escapes less well than this light is known
     home = illuminance + missing * _spread(transfer, illuminance)
     if home.min(initial=0.0) < 0:
@@ -338,7 +338,7 @@ def settled_home(
     transfer: Transfer, interreflected: np.ndarray, initial: np.ndarray, share: np.ndarray
 ) -> tuple[np.ndarray, float]:
     """Interreflected light as `brought_home`, when all of it is reflected again by ``share`` (e,)."""
-    conservation, area = transfer.conservation, transfer.geometry.fracture.element_areas
+    conservation, area = transfer.conservation, transfer.geometry.areas
     stays = area * share * (1 - conservation.lost)
     spread = _spread(transfer, interreflected)
     missing = float(stays @ (initial + interreflected)) - float(conservation.kept @ interreflected)

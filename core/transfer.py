@@ -21,6 +21,7 @@ from .geometry import Geometry
 from .inspection import inspect
 from .nodes import Nodes
 from .options import Options, checked_scene
+from .planes import find_planes
 from .scene import Scene
 from .sky import UniformSky
 from .specular import ChainLimits
@@ -304,7 +305,7 @@ class Transfer:
             geometry=geometry,
             conservation=replace(self.conservation, kept=geometry.areas_kept),
             stages=(*(stage for stage in self.stages if stage.skipped and stage.name != LOOKING), note),
-            findings=inspect(scene, geometry.planes),
+            findings=inspect(scene, find_planes(scene)),
         )
 
     def save(self, path) -> Path:

@@ -18,6 +18,9 @@ EVEN = luz.Daylight(sky=luz.UniformSky(1000.0))
 PLATE = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], float)
 ROOM = {**{k: v for k, v in box_polygons((4, 4, 3)).items() if k != "ceiling"}}
 ROOM["lid"] = np.array([[0, 4, 3], [4, 4, 3], [4, 2, 3], [0, 2, 3]], float)
+AS_COARSE = 3e-3
+"""What few receivers may be off by, where surfaces more or less change how they are shared."""
+
 POINTS, NORMALS = np.array([[2, 2, 0], [0.5, 3, 0], [4, 2, 1.5]]), np.array([[0, 0, 1], [0, 0, 1], [-1, 0, 0]])
 
 
@@ -204,9 +207,25 @@ def along_a_parcels_edge() -> Outcome:
 def doubled(material) -> Outcome:
     floor = ROOM["floor"]
     scene = half_open(again=(floor, material))
-    # each copy receives and reflects, though but one of them is seen: some of what the other sends is made up for
-    same = near(lux(scene), lux(half_open()), 0.03) if material is GREY else told(scene, "overlap")
+    same = near(lux(scene), lux(half_open()), AS_COARSE) if material is GREY else told(scene, "overlap")
     return all_of(told(scene, "overlap"), same)
+
+
+def twice(polygon, material, light, two_sided=False) -> Outcome:
+    """A thing given twice in a room counts once, whatever it does with light, and its doubles show what it gets."""
+
+    def result(copies: int) -> luz.Result:
+        scene = half_open()
+        for copy in range(copies):
+            scene.add(f"copy {copy}", np.array(polygon, float), material, two_sided=two_sided)
+        return solved(scene, light, elements=150, bands=40)
+
+    once, both = result(1), result(2)
+    return all_of(
+        near(both.at(POINTS, NORMALS), once.at(POINTS, NORMALS), AS_COARSE),
+        near([both.mean(f"copy {copy}") for copy in (0, 1)], np.full(2, once.mean("copy 0")), AS_COARSE),
+        near(both.balance.entering, once.balance.entering, AS_COARSE),
+    )
 
 
 def polygon_refused(points, *words) -> Outcome:
@@ -253,6 +272,16 @@ def situations() -> Iterator[Situation]:
     yield row("a face of 1e-6 m above a plain of 100 m", grain_beside_a_plain)
     yield row("a floor twice, of one material", lambda: doubled(GREY))
     yield row("a floor twice, of two materials", lambda: doubled(BLACK))
+    sunny = luz.Daylight(sky=luz.UniformSky(1000.0), sun=luz.Sun(direction=(0.3, 0.2, 1), normal_illuminance=1e5))
+    table, upright = [[1, 1, 1], [3, 1, 1], [3, 3, 1], [1, 3, 1]], [[3.9, 1, 2], [3.9, 3, 2], [3.9, 3, 1], [3.9, 1, 1]]
+    for name, polygon, material, both in (
+        ("table", table, GREY, True),
+        ("table of one side", table, GREY, False),
+        ("lamp", table[::-1], LAMP, False),
+        ("mirror", upright, luz.Material(specular_reflectance=0.8), False),
+        ("pane", [[0, 2, 3], [4, 2, 3], [4, 0, 3], [0, 0, 3]], luz.Material(regular_transmittance=0.8), False),
+    ):
+        yield row(f"a {name} twice", lambda p=polygon, m=material, b=both: twice(p, m, sunny, b))
     yield row("T-junctions all around", t_junctions)
     yield row("a polygon without area", lambda: polygon_refused([[0, 0, 0], [1, 1, 1], [2, 2, 2]], "no area"))
     yield row("a polygon that is a point", lambda: polygon_refused([[1, 1, 1]] * 4, "no area"))
