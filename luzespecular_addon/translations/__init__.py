@@ -43,16 +43,17 @@ def solver_message(said: Exception | str) -> str:
 
 
 def _known(said: str) -> str | None:
-    """Return the translation of what the templates know; None of all else."""
+    """Return the translation of what the templates know, also of what stands in their fields; None of all else."""
     for template, pattern in _PATTERNS:
         match = pattern.fullmatch(said)
         if match:
-            return rpt_(template).format(**match.groupdict())
+            return rpt_(template).format(**{name: _known(value) or value for name, value in match.groupdict().items()})
     return None
 
 
 def _pattern(template: str) -> re.Pattern[str]:
-    return re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(template)), re.DOTALL)
+    fields = re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(template))
+    return re.compile(fields.replace("(?P<more>.+?)", r"(?P<more>( \(.+\))?)"), re.DOTALL)
 
 
 _PATTERNS = tuple((template, _pattern(template)) for template in SOLVER)

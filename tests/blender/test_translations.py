@@ -177,6 +177,17 @@ def test_findings_of_the_scene_check_are_translated(addon, monkeypatch):
     assert not foreign
 
 
+def test_what_is_added_to_a_finding_is_translated(addon, monkeypatch):
+    translations = addon.translations
+    monkeypatch.setattr(translations, "rpt_", translations.SOLVER.__getitem__)
+    said = (
+        "Surface 'Roof' has its back to 'Sky' and its front sees nothing "
+        "(of its 900 planes the 300 largest were looked at, others may be alike)"
+    )
+    told = translations.solver_message(said)
+    assert told.endswith("não vê nada (de seus 900 planos foram vistos os 300 maiores, outros podem ser iguais)")
+
+
 def test_kinds_of_findings_are_translated(addon):
     found = {finding.kind for make, *_ in FAULTS.values() for finding in luzespecular.check(make())}
     assert len(found) > 15

@@ -40,6 +40,7 @@ KINDS = {
 }
 
 # What the solver refuses or remarks, by the templates of its messages: a test holds them to the solver's source.
+# {more} stands for a remark in brackets, or for nothing.
 SOLVER = {
     "The scene has no surfaces; add at least one with scene.add(name, vertices, material)": (
         "A cena não tem superfícies; adicione ao menos uma"
@@ -58,6 +59,16 @@ SOLVER = {
     ),
     "Surface '{name}': the edges of face {face} cross each other; split it or reorder its vertices": (
         "Superfície '{name}': as arestas da face {face} se cruzam; divida-a ou reordene seus vértices"
+    ),
+    "Surface '{name}': the polygon crosses itself at a corner or covers a part twice; "
+    "split it or reorder its vertices": (
+        "Superfície '{name}': o polígono se cruza em um canto ou cobre uma parte duas vezes; divida-o ou reordene seus "
+        "vértices"
+    ),
+    "Surface '{name}': face {row} crosses itself at a corner or covers a part twice; "
+    "split it or reorder its vertices": (
+        "Superfície '{name}': a face {row} se cruza em um canto ou cobre uma parte duas vezes; "
+        "divida-a ou reordene seus vértices"
     ),
     "Surface '{name}' is not flat: a vertex lies {distance} m off its plane; "
     "move it, or add the surface as a mesh of triangles": (
@@ -144,14 +155,17 @@ SOLVER = {
         "As superfícies '{one}' e '{two}' estão lado a lado no mesmo plano e olham para lados opostos"
     ),
     "turn the normals of one of them": "vire as normais de uma delas",
-    "Surface '{name}' has its back to {others} and its front sees nothing": (
-        "A superfície '{name}' está de costas para {others} e sua frente não vê nada"
+    "Surface '{name}' has its back to {others} and its front sees nothing{more}": (
+        "A superfície '{name}' está de costas para {others} e sua frente não vê nada{more}"
+    ),
+    " (of its {every} planes the {some} largest were looked at, others may be alike)": (
+        " (de seus {every} planos foram vistos os {some} maiores, outros podem ser iguais)"
     ),
     "turn its normals (reverse the order of the vertices), or make it two-sided": (
         "vire suas normais (inverta a ordem dos vértices), ou dê-lhe dois lados"
     ),
-    "Surface '{name}' is seen from behind by {others}, where it is black: it has one side only": (
-        "A superfície '{name}' é vista por trás por {others}, onde é preta: só tem um lado"
+    "Surface '{name}' is seen from behind by {others}, where it is black: it has one side only{more}": (
+        "A superfície '{name}' é vista por trás por {others}, onde é preta: só tem um lado{more}"
     ),
     "turn its normals, make it two-sided, or give it a second surface behind": (
         "vire suas normais, dê-lhe dois lados, ou ponha uma segunda superfície atrás"
