@@ -55,6 +55,9 @@ def joined(batches) -> np.ndarray:
     return np.concatenate([widen(batch, width) for batch in batches])
 
 
+_STRAIGHT = 1e-6
+"""Sine of the angle between edges that go straight on."""
+
 # Radon's rule for means over triangles, exact to the fifth degree: barycentric places, and shares
 _NEAR, _FAR = (6 - np.sqrt(15)) / 21, (6 + np.sqrt(15)) / 21
 RADON_PLACES = np.array(
@@ -312,6 +315,68 @@ def convex_parts(loop, tolerance: float) -> list[np.ndarray]:
                 merged = True
                 break
     return [simplify(p[part], tolerance) for part in parts]
+
+
+def merged(pieces: list[np.ndarray]) -> list[np.ndarray]:
+    """Convex pieces of one plane, joined across edges that two of them share where the two together are convex.
+
+    Parameters
+    ----------
+    pieces : list of (v, 3) array of float
+        All right-handed about the same normal.
+
+    Returns
+    -------
+    list of (u, 3) array of float
+        They cover the same.
+    """
+    if len(pieces) < 2:
+        return pieces
+    corners = np.concatenate(pieces)
+    normal = sum(newell_normal(piece) for piece in pieces)
+    flat = (corners - corners[0]) @ plane_basis(normal / np.linalg.norm(normal)).T
+    same = 1e-7 * max(float(np.ptp(flat, axis=0).max()), 1e-300)
+    _, first, numbers = np.unique(np.rint(flat / same), axis=0, return_index=True, return_inverse=True)
+    places, corners = flat[first], corners[first]
+    rings: list[list[int] | None] = []
+    for around in np.split(numbers.reshape(-1), np.cumsum([len(piece) for piece in pieces])[:-1]):
+        rings.append([int(a) for a, b in zip(around, np.roll(around, -1), strict=True) if a != b])
+    owner = {edge: k for k, ring in enumerate(rings) if ring for edge in _edges(ring)}
+    waiting = list(range(len(rings)))
+    while waiting:
+        k = waiting.pop()
+        ring = rings[k]
+        for a, b in _edges(ring) if ring else ():
+            other = owner.get((b, a), k)
+            neighbour = rings[other]
+            if other == k or neighbour is None or ring is None or (b, a) not in _edges(neighbour):
+                continue
+            here, there = ring.index(b), neighbour.index(a)
+            joined_ring = ring[here:] + ring[:here] + (neighbour[there:] + neighbour[:there])[1:-1]
+            union = _convex_ring(joined_ring, places)
+            if union is None:
+                continue
+            rings[k], rings[other] = union, None
+            owner.update(dict.fromkeys(_edges(union), k))
+            waiting.append(k)
+            break
+    return [corners[ring] for ring in rings if ring]
+
+
+def _edges(ring: list[int]) -> list[tuple[int, int]]:
+    return list(zip(ring, ring[1:] + ring[:1], strict=True))
+
+
+def _convex_ring(ring: list[int], places: np.ndarray) -> list[int] | None:
+    """The ring without corners that lie on its edges; None where it is not convex."""
+    at = places[ring]
+    before, after = at - np.roll(at, 1, axis=0), np.roll(at, -1, axis=0) - at
+    turn = _cross(before, after)
+    scale = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+    if (turn < -_STRAIGHT * scale).any() or len(set(ring)) < len(ring):
+        return None
+    kept = [corner for corner, bends in zip(ring, turn > _STRAIGHT * scale, strict=True) if bends]
+    return kept if len(kept) > 2 else None
 
 
 def pad(polygons: list[np.ndarray], width: int | None = None) -> tuple[np.ndarray, np.ndarray]:

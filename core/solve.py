@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import radiosity
+from . import polygons, radiosity
 from .daylight import Daylight
 from .errors import SceneError
 from .estimate import LEAST, OF_DOUBT, relative_errors
@@ -272,11 +272,16 @@ def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], li
             emitters.append(Source(polygon, material.exitance))
             if two_sided:
                 emitters.append(Source(polygon[::-1], material.exitance))
+    alike: dict[tuple[int, bool, float], list[np.ndarray]] = {}
     for patch in sunlight.patches:
-        reflectance = outlines.materials[patch.outline].diffuse_reflectance
-        if reflectance > 0 and (patch.front or outlines.two_sided[patch.outline]):
+        if outlines.materials[patch.outline].diffuse_reflectance > 0 and (
+            patch.front or outlines.two_sided[patch.outline]
+        ):
             polygon = patch.polygon if patch.front else patch.polygon[::-1]
-            sunny.append(Source(polygon, reflectance * patch.illuminance))
+            alike.setdefault((patch.outline, patch.front, patch.illuminance), []).append(polygon)
+    for (outline, _, illuminance), pieces in alike.items():
+        exitance = outlines.materials[outline].diffuse_reflectance * illuminance
+        sunny += [Source(polygon, exitance) for polygon in polygons.merged(pieces)]
     return emitters, sunny
 
 

@@ -115,8 +115,10 @@ def gather_sources(
     # one in the receivers' own plane too: it comes into view by way of others
     mirrors = [o for o, material in enumerate(outlines.materials) if material.is_specular]
     least = faint * even_illuminance(outlines, sources)
-    view = _SourceView(outlines, _coplanar(sources, outlines), mirrors, limits, least, checkpoint)
-    return view.illuminance(_Leg(np.asarray(points, float), horizon, None, None, (), (), 1.0, None, 0))
+    points = np.asarray(points, float)
+    unseen = outlines.unseen_backs(points, horizon.normal)
+    view = _SourceView(outlines, unseen, _coplanar(sources, outlines), mirrors, limits, least, checkpoint)
+    return view.illuminance(_Leg(points, horizon, None, None, (), (), 1.0, None, 0))
 
 
 def even_illuminance(outlines: Outlines, sources: list[Source]) -> float:
@@ -260,11 +262,14 @@ class _SourceView:
 
     Attributes
     ----------
+    unseen_backs : (o,) bool
+        Outlines that nobody need look for who is behind them.
     least : float
         What gives no more is not looked for [lx].
     """
 
     outlines: Outlines
+    unseen_backs: np.ndarray
     groups: list[_Coplanar]
     mirrors: list[int]
     limits: ChainLimits
@@ -309,7 +314,7 @@ class _SourceView:
             return
         rows, place = np.unique(row, return_inverse=True)
         target = visible[np.unique(which)].reshape(-1, 3)
-        between = _between(outlines, leg.points[rows], target, [plane, *leg.limits])
+        between = _between(outlines, self.unseen_backs, leg.points[rows], target, [plane, *leg.limits])
         screens = [*leg.screens, *(Screen(polygon, o) for o, polygon in between)]
         total[rows] += _light_past(
             outlines,
@@ -345,7 +350,9 @@ class _SourceView:
             if not bright.any():
                 continue
             rows, window, opening = rows[bright], window[bright], opening[bright]
-            between = _between(outlines, leg.points[rows], aperture[0], [ahead, *leg.limits], skip=mirror)
+            between = _between(
+                outlines, self.unseen_backs, leg.points[rows], aperture[0], [ahead, *leg.limits], skip=mirror
+            )
             screens = [*leg.screens, *(Screen(polygon, o) for o, polygon in between)]
             passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in leg.mirrors]
             total[rows] += self.illuminance(
@@ -396,7 +403,7 @@ def _above(vertices, half: HalfSpace, tolerance: float) -> np.ndarray:
     return (vertices @ half.normal - half.offset > tolerance).any(axis=1)
 
 
-def _between(outlines: Outlines, points, target, half_spaces: list[HalfSpace], skip: int = -1):
+def _between(outlines: Outlines, unseen_backs, points, target, half_spaces: list[HalfSpace], skip: int = -1):
     """Outlines, cut to the half-spaces, whose plane separates some receiver from some of the target."""
     tolerance = outlines.tolerance
     mask = np.ones(len(outlines.vertices), bool)
@@ -414,6 +421,7 @@ def _between(outlines: Outlines, points, target, half_spaces: list[HalfSpace], s
     apart = ((near.max(axis=0) > tolerance) & (far.min(axis=0) < -tolerance)) | (
         (near.min(axis=0) < -tolerance) & (far.max(axis=0) > tolerance)
     )
+    apart &= ~unseen_backs[index] | (near.max(axis=0) > tolerance)  # who is behind a solid's side is behind others
     kept = index[apart]
     parts = outlines.vertices[kept]
     for half in half_spaces:

@@ -94,6 +94,12 @@ class Outlines:
         """(o,) bool: whether light on the back goes anywhere, onto a receiver or on by a mirror."""
         return self.two_sided | np.array([m.reflects_both_sides for m in self.materials], bool)
 
+    def unseen_backs(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """(o,) bool: outlines whose backs none of some receivers of one plane ``(r, 3)`` can see."""
+        if self.solids is None:
+            return np.zeros(len(self.vertices), bool)
+        return self.solids.unseen_backs(points, normal)
+
     @cached_property
     def any_specular(self) -> bool:
         """Whether any surface mirrors or transmits regularly."""
@@ -441,9 +447,7 @@ class GroupSight:
         beams = Beams.of(hemisphere)
         weights = np.broadcast_to(hemisphere.weights, (len(points), len(hemisphere.weights)))
         horizon = HalfSpace(hemisphere.normal, self.offset)
-        unseen_backs = np.zeros(len(self.outlines.vertices), bool)
-        if self.outlines.solids is not None:
-            unseen_backs = self.outlines.solids.unseen_backs(points, hemisphere.normal)
+        unseen_backs = self.outlines.unseen_backs(points, hemisphere.normal)
         left = []
         if len(self.outlines.vertices) > MANY_OUTLINES:
             left.append(_Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, 0, 0))

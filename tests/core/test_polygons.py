@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from luzespecular import polygons
@@ -311,3 +311,28 @@ def test_slivers_keep_their_corners(width):
     assert polygons.areas(by_row[1]) == pytest.approx(12)
     (part,) = polygons.convex_parts(loop[:, :2], 1e-9)
     assert flat_area(part) == pytest.approx(width)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 5))
+def test_pieces_merged_cover_the_same_and_are_convex_and_fewer(seed, cuts):
+    """A square cut along lines in turn, some parts left out: areas, and what is seen of it, stay."""
+    rng = np.random.default_rng(seed)
+    pieces = [np.array([[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)]
+    for _ in range(cuts):
+        angle, place = rng.uniform(0, np.pi), rng.uniform(0.2, 0.8, 2)
+        wall = np.array([np.cos(angle), np.sin(angle), 0.0])
+        offset = float(wall[:2] @ place)
+        halves = [polygons.clip(p[None], s * wall, s * offset)[0] for p in pieces for s in (1.0, -1.0)]
+        pieces = [half for half in halves if polygons.areas(half) > 1e-6]
+    kept = [piece for piece in pieces if rng.uniform() < 0.8] or pieces
+    merged = polygons.merged(kept)
+    assert len(merged) <= len(kept)
+    assert sum(map(polygons.areas, merged)) == pytest.approx(sum(map(polygons.areas, kept)), rel=1e-9)
+    for piece in merged:
+        assert polygons.is_convex(piece[:, :2], 1e-9)
+    eye, down = np.array([0.3, 0.4, -0.5]), np.array([0, 0, 1.0])
+    seen = [sum(polygons.lambert_form_factor((p - eye)[None], down)[0] for p in parts) for parts in (kept, merged)]
+    assert seen[0] == pytest.approx(seen[1], rel=1e-9)
+    if len(kept) == len(pieces):
+        assert len(merged) < len(pieces), "all cuts of a square can be mended, in part at least"
