@@ -13,6 +13,9 @@ from .views import Eye
 _WELL_BEHIND = 1.05
 """How much farther than a wholly seen obstacle a corner must be to be hidden without a closer look."""
 
+_ASKEW = np.array([0.48, 0.6, 0.64], np.float32)
+"""In line with nothing that is built, as a rule."""
+
 _ALIGNED = 0.99
 """Cosine between edges that count as parallel within one beam."""
 
@@ -112,7 +115,8 @@ class Crossed:
     """Obstacles whose edges cross beams, sorted by beam; all arrays of length n.
 
     ``number`` is their place among the candidates. ``share`` and ``offset`` are those by the crossing edge alone, where
-    there is just one; ``edge_sum`` is the sum of the normals of the crossing edges' planes.
+    there is just one; ``edge_sum`` is the sum of the normals of the crossing edges' planes, and of the cubes of what these are
+    along some direction: edges that are no pairs of opposite ones may have normals that cancel, but not both.
     """
 
     row: np.ndarray
@@ -159,14 +163,15 @@ def find_crossings(seen, candidates: Candidates, heights, beams: Beams, obstacle
     pair, normal = candidates.pair, candidates.normal
     covered, moment = coverage(candidates.place.astype(float), *candidates.across.astype(float))
     # exact for one edge, and near enough where edges meet at a corner
-    share, edge_sum = np.ones(len(mine)), np.zeros((len(mine), 3), np.float32)
+    share, edge_sum = np.ones(len(mine)), np.zeros((len(mine), 4), np.float32)
+    told = np.concatenate([normal, (normal @ _ASKEW)[:, None] ** 3], axis=1)
     lone = edges.take(pair) == 1
     several = np.flatnonzero(~lone)
     lone = np.flatnonzero(lone)
     share[pair[lone]] = covered[lone]
-    edge_sum[pair[lone]] = normal.take(lone, axis=0)
+    edge_sum[pair[lone]] = told.take(lone, axis=0)
     np.multiply.at(share, pair[several], covered[several])
-    np.add.at(edge_sum, pair[several], normal.take(several, axis=0))
+    np.add.at(edge_sum, pair[several], told.take(several, axis=0))
     last = np.zeros(len(mine), np.int64)
     last[pair] = np.arange(len(pair))
     offset = (moment / np.maximum(covered, 1e-12)).astype(np.float32).take(last)[:, None] * normal.take(last, axis=0)

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from builders import box_polygons
+from builders import box_polygons, prepare_coarse
 from test_visibility import seen_shares
 
+import luzespecular as luz
 from luzespecular import polygons
 from luzespecular.materials import Material
 from luzespecular.sources import Source, gather_sources
@@ -143,3 +144,25 @@ def test_closed_solids_that_are_not_convex_show_no_backs(bands):
     np.testing.assert_allclose(shares.sum(axis=1), 1, atol=2e-6)
     assert shares[:, -1].max() < 1e-6
     assert shares[:, 2].max() < 1e-6, "the wall that shows its back"
+
+
+@pytest.mark.parametrize("bands", [24, 60])
+@pytest.mark.parametrize("width", [0.1, 0.03, 0.01])
+def test_a_small_hole_straight_above(bands, width):
+    """Its edges' normals cancel for whoever is right below, as if each edge were met by another."""
+    scene = luz.Scene()
+    a, b = 2 - 0.5 * width, 2 + 0.5 * width
+    for name, ((x0, x1), (y0, y1)) in {
+        "west": ((0, a), (0, 4)),
+        "east": ((b, 4), (0, 4)),
+        "south": ((a, b), (0, a)),
+        "north": ((a, b), (b, 4)),
+    }.items():
+        scene.add(name, [[x0, y1, 3], [x1, y1, 3], [x1, y0, 3], [x0, y0, 3]], luz.Material())
+    for name, polygon in box_polygons((4, 4, 3)).items():
+        if name != "ceiling":
+            scene.add(f"room {name}", polygon, luz.Material())
+    result = prepare_coarse(scene, elements=40, bands=bands).solve(luz.Daylight(sky=luz.UniformSky(1e6)))
+    points = np.array([[2, 2, 0], [2.0001, 2, 0], [2.1, 2.05, 0]])
+    expected = 1e6 * width**2 * 9 / (((points - [2, 2, 3]) ** 2).sum(axis=1)) ** 2
+    np.testing.assert_allclose(result.at(points, [[0, 0, 1.0]] * 3), expected, rtol=0.01)
