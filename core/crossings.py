@@ -115,8 +115,8 @@ class Crossed:
     """Obstacles whose edges cross beams, sorted by beam; all arrays of length n.
 
     ``number`` is their place among the candidates. ``share`` and ``offset`` are those by the crossing edge alone, where
-    there is just one; ``edge_sum`` is the sum of the normals of the crossing edges' planes, and fourth of the cubes of what
-    these are along some direction: where edges are no pairs of opposite ones, their normals may cancel, but not both.
+    there is just one; ``edge_sum`` is the sum of the normals of the crossing edges' planes, and fourth of the cubes of
+    what these are along some direction: where edges are no pairs of opposite ones, both hardly cancel.
     """
 
     row: np.ndarray
