@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import tomllib
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -263,7 +264,11 @@ def test_control_c_ends_a_run_that_is_under_way(tmp_path):
     room = ROOT / "examples" / "light_shelf" / "light_shelf.json"
     arguments = ["solve", str(room), "--out", str(tmp_path / "out"), *SITE, "--bands", "90"]
     running = subprocess.Popen(
-        [sys.executable, "-m", "luzespecular.cli", *arguments], stderr=subprocess.PIPE, text=True
+        [sys.executable, "-m", "luzespecular.cli", *arguments],
+        stderr=subprocess.PIPE,
+        text=True,
+        # where the tests run in a shell's background, interrupts are ignored from the start
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
     try:
         while "visibility" not in running.stderr.readline():
