@@ -60,24 +60,22 @@ class ConvexRoom:
         outlines, patches = geometry.outlines, geometry.targets.patches
         if outlines.any_specular or outlines.two_sided.any() or not patches.count or patches.profiles:
             return None
-        room = cls.around(geometry, patches)
-        corners = outlines.vertices.reshape(-1, 3)
-        if not _all_before(corners, room.normals, room.offsets, outlines.tolerance):
+        corners, normals = outlines.vertices.reshape(-1, 3), geometry.planes.sheet_normal
+        if not _all_before(corners, normals, _offsets(geometry), outlines.tolerance):
             return None
+        room = cls.around(geometry, patches)
         return room if room._is_closed(nodes, geometry.element_normals) else None
 
     @classmethod
     def around(cls, geometry: Geometry, patches: Patches) -> ConvexRoom:
         """A room that is known to be one, in these patches."""
-        offsets = np.full(len(geometry.planes.sheet_normal), np.nan)  # doubles are no part of such a room
-        offsets[geometry.planes.outline_sheet] = geometry.outlines.offsets
         patch = np.where(patches.of_element < 0, patches.count, patches.of_element)
         sheet = geometry.fracture.element_sheet
         (group_patch, group_sheet), group = np.unique(np.stack([patch, sheet]), axis=1, return_inverse=True)
         owner, begin, end = borders(geometry.fracture.elements, group.reshape(-1), geometry.planes.size)
         return cls(
             geometry.planes.sheet_normal,
-            offsets,
+            _offsets(geometry),
             begin,
             end,
             np.searchsorted(owner, np.arange(len(group_patch))),
@@ -107,9 +105,7 @@ class ConvexRoom:
         (r, p + 1) float
             Last what shines nowhere.
         """
-        beside = (self.normals @ normal > 1 - 1e-9) & (
-            np.abs(self.normals @ points[0] - self.offsets) <= self.tolerance
-        )
+        beside = self._beside(points, normal)
         out = np.zeros((len(points), self.patches + 1))
         used, first = np.unique(self.group_patch, return_index=True)
         step = max(1, _CELLS // len(self.begin))
@@ -145,6 +141,13 @@ class ConvexRoom:
         )
 
 
+def _offsets(geometry: Geometry) -> np.ndarray:
+    """(s,) float: those of sheets' planes; not a number for doubles, which are no part of such a room."""
+    offsets = np.full(len(geometry.planes.sheet_normal), np.nan)
+    offsets[geometry.planes.outline_sheet] = geometry.outlines.offsets
+    return offsets
+
+
 def _all_before(corners: np.ndarray, normals: np.ndarray, offsets: np.ndarray, tolerance: float) -> bool:
     """Whether no corner ``(v, 3)`` lies behind a plane."""
     step = max(1, _CELLS // len(corners))
@@ -169,7 +172,7 @@ def borders(triangles: np.ndarray, group: np.ndarray, size: float) -> tuple[np.n
     begin, end : (k, 3) float
     """
     corners = triangles.reshape(-1, 3)
-    _, first, vertex = np.unique(np.rint(corners / (1e-10 * size)), axis=0, return_index=True, return_inverse=True)
+    first, vertex = polygons.welded(corners, 1e-10 * size)
     places, one = corners[first], vertex.reshape(-1, 3)
     two, owner = np.roll(one, -1, axis=1).ravel(), np.repeat(group, 3)
     one = one.ravel()

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from .clusters import MANY_FACETS
+from .doubles import seen_once
 from .errors import SceneError
 from .fracture import Fracture, fracture
 from .gather import Targets
@@ -81,7 +82,7 @@ class Geometry:
     @property
     def element_surface(self) -> np.ndarray:
         """(e,) int."""
-        return self.planes.sheet_surface[self.fracture.element_sheet % len(self.planes.sheet_surface)]
+        return self.fracture.element_surface
 
     def of_elements(self, name: str) -> np.ndarray:
         """(e,) float: a property of the elements' materials."""
@@ -110,9 +111,7 @@ class Geometry:
 
     def patch_sums(self, values: np.ndarray) -> np.ndarray:
         """(p,) float: sums over each patch's elements of values ``(e,)``."""
-        patch = self.targets.patches.of_element
-        mine = patch >= 0
-        return np.bincount(patch[mine], weights=values[mine], minlength=self.targets.patches.count).astype(float)
+        return self.targets.patches.sums(values)
 
     @cached_property
     def patch_areas(self) -> np.ndarray:
@@ -131,11 +130,8 @@ class Geometry:
 
     def cell_means(self, values: np.ndarray) -> np.ndarray:
         """(c,) float: area-weighted means over `cells` of values ``(e,)``."""
-        cell, area = self.cells.patches.of_element, self.fracture.element_areas
-        mine = cell >= 0
-        count = self.cells.patches.count
-        sums = np.bincount(cell[mine], weights=(area * values)[mine], minlength=count)
-        return sums / np.bincount(cell[mine], weights=area[mine], minlength=count)
+        cells, area = self.cells.patches, self.fracture.element_areas
+        return cells.sums(area * values) / cells.sums(area)
 
     def from_patches(self, values: np.ndarray) -> np.ndarray:
         """(e,) float: values of patches ``(p,)`` on their elements, 0 on those of none."""
@@ -156,12 +152,13 @@ def make_geometry(
     times: float = 1.0,
     receivers: Collection[str] | None = None,
 ) -> Geometry:
-    """Cut planes into faces, elements and patches, and list the outlines with their materials.
+    """Cut planes into faces, elements and patches, and list the outlines with their materials, doubled ones once.
 
     ``times`` as many faces and patches as usual are made, where the user gives no ``max_area``. Surfaces that
     are none of the ``receivers`` are cut into no faces.
     """
     surfaces = list(scene.surfaces.values())
+    planes = seen_once(planes, surfaces)
     reflects = np.array([s.material.diffuse_reflectance > 0 for s in surfaces])
     emits = np.array([s.material.exitance > 0 for s in surfaces])
     # light that a black luminous surface receives goes nowhere: cut it only where the user says how fine
@@ -173,11 +170,10 @@ def make_geometry(
         cuts = replace(cuts, grids=tuple(grid for grid in cuts.grids if grid.rows * grid.columns > 1))
     points = cuts.elements.mean(axis=1)
     fronts = len(planes.sheet_surface)
-    surface = planes.sheet_surface[cuts.element_sheet % fronts]
     normals = (
         planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
     )
-    active = (reflects | emits)[surface] & (planes.stands_for[cuts.element_sheet] == cuts.element_sheet)
+    active = (reflects | emits)[cuts.element_surface] & (planes.stands_for[cuts.element_sheet] == cuts.element_sheet)
     lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes) for grid in cuts.grids]
     patches = make_patches(
         planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, round(PATCHES * times), lattices

@@ -300,8 +300,7 @@ class Globe:
             sampled = weights[low].sum()
             if sampled > 0:
                 weights[low] *= (1.0 - weights[~cut].sum()) / sampled
-            chord = np.linalg.norm(self.corners[parcels[low]] - directions[low][:, None], axis=2).max(axis=1)
-            distance[low] = 2 * np.arcsin(0.5 * chord)
+            distance[low] = self._to_corners(parcels[low], directions[low])
         keep = weights > 0
         return Hemisphere(
             normal=n,
@@ -319,7 +318,6 @@ class Globe:
     @cached_property
     def whole(self) -> Hemisphere:
         """All parcels, as a plane would see them that has no horizon and weighs nothing."""
-        chord = np.linalg.norm(self.corners - self.directions[:, None], axis=2).max(axis=1)
         every = np.arange(self.count)
         return Hemisphere(
             normal=np.zeros(3),
@@ -330,9 +328,14 @@ class Globe:
             axes=self.axes,
             odd=self.polar_rank(every) < POLAR_BANDS,
             cut=np.ones(self.count, bool),
-            reach=2 * np.arcsin(0.5 * chord),
+            reach=self._to_corners(every, self.directions),
             globe=self,
         )
+
+    def _to_corners(self, parcels, directions) -> np.ndarray:
+        """(m,) float: angles from directions ``(m, 3)`` to the farthest corner of each parcel [rad]."""
+        chord = np.linalg.norm(self.corners[parcels] - directions[:, None], axis=2).max(axis=1)
+        return 2 * np.arcsin(0.5 * chord)
 
     def _above(self, parcels, normal) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Cosine weight, parts and their sum of directions ``(m, 3)``, of what of parcels is above a horizon."""

@@ -58,6 +58,11 @@ class Patches:
         """What beams can end on: patches, and parts of them across narrow strips."""
         return self.count + sum(p.along * len(p.shares) for p in self.profiles)
 
+    def sums(self, values: np.ndarray) -> np.ndarray:
+        """(p,) float: sums over each patch's elements of values ``(e,)``."""
+        mine = self.of_element >= 0
+        return np.bincount(self.of_element[mine], weights=values[mine], minlength=self.count).astype(float)
+
     def merged(self, grids: tuple[Grid, ...], element_sheet: np.ndarray) -> np.ndarray:
         """(p,) int: groups of patches that lie beside each other, twice as wide as they are.
 

@@ -172,8 +172,7 @@ def join_outline(loops: list[np.ndarray], normal: np.ndarray) -> list[np.ndarray
     origin = points.mean(axis=0)
     flat = (points - origin) @ basis.T
     extent = np.ptp(flat, axis=0).max()
-    _, first, ids = np.unique(np.rint(flat / (1e-7 * extent)), axis=0, return_index=True, return_inverse=True)
-    ids = ids.reshape(-1)
+    first, ids = polygons.welded(flat, 1e-7 * extent)
     starts = np.cumsum([0] + [len(p) for p in loops])
     nxt: dict[int, int] = {}
     edges = set()

@@ -145,7 +145,7 @@ def without_flat_corners(polygons) -> list[tuple[np.ndarray, np.ndarray]]:
             bent |= np.einsum("mvc,mvc->mv", before, after) < 0
             for some, fewer in _with_corners(loops, bent):
                 mine = rows[some]
-                same = np.abs(areas(fewer) - areas(p[mine])) <= _SAME_AREA * areas(p[mine])
+                same = np.abs(areas(fewer) - areas(p[mine])) <= SAME_AREA * areas(p[mine])
                 same |= rounding == 0
                 found.append((left[mine[same]], fewer[same]))
                 lost.append(mine[~same])
@@ -157,7 +157,8 @@ def without_flat_corners(polygons) -> list[tuple[np.ndarray, np.ndarray]]:
 _ROUNDING = 1e-12
 """Over a polygon's size: what is nearer than this, is one."""
 
-_SAME_AREA = 1e-6
+SAME_AREA = 1e-6
+"""Relative difference of areas that are the same."""
 
 
 def _with_corners(polygons: np.ndarray, kept: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -288,7 +289,7 @@ def convex_parts(loop, tolerance: float) -> list[np.ndarray]:
     p = np.asarray(loop, float)
     # where corners lie closer together than the tolerance, a bend inwards would count as none
     apart = p[np.linalg.norm(p - np.roll(p, 1, axis=0), axis=1) > tolerance]
-    if abs(_signed_area(apart) - _signed_area(p)) <= _SAME_AREA * abs(_signed_area(p)):
+    if abs(_signed_area(apart) - _signed_area(p)) <= SAME_AREA * abs(_signed_area(p)):
         p = apart
     if is_convex(p, tolerance):
         return [p]
@@ -317,6 +318,26 @@ def convex_parts(loop, tolerance: float) -> list[np.ndarray]:
     return [simplify(p[part], tolerance) for part in parts]
 
 
+def welded(corners, same: float) -> tuple[np.ndarray, np.ndarray]:
+    """Corners ``(n, d)`` that lie together as one.
+
+    Parameters
+    ----------
+    corners : (n, d) array of float
+    same : float
+        Distance at which corners are one; some that lie closer stay apart.
+
+    Returns
+    -------
+    first : (k,) int
+        The first of each that are one.
+    number : (n,) int
+        Which of the ``k`` each is.
+    """
+    _, first, number = np.unique(np.rint(corners / same), axis=0, return_index=True, return_inverse=True)
+    return first, number.reshape(-1)
+
+
 def merged(pieces: list[np.ndarray]) -> list[np.ndarray]:
     """Convex pieces of one plane, joined across edges that two of them share where the two together are convex.
 
@@ -336,10 +357,10 @@ def merged(pieces: list[np.ndarray]) -> list[np.ndarray]:
     normal = sum(newell_normal(piece) for piece in pieces)
     flat = (corners - corners[0]) @ plane_basis(normal / np.linalg.norm(normal)).T
     same = 1e-7 * max(float(np.ptp(flat, axis=0).max()), 1e-300)
-    _, first, numbers = np.unique(np.rint(flat / same), axis=0, return_index=True, return_inverse=True)
+    first, numbers = welded(flat, same)
     places, corners = flat[first], corners[first]
     rings: list[list[int] | None] = []
-    for around in np.split(numbers.reshape(-1), np.cumsum([len(piece) for piece in pieces])[:-1]):
+    for around in np.split(numbers, np.cumsum([len(piece) for piece in pieces])[:-1]):
         rings.append([int(a) for a, b in zip(around, np.roll(around, -1), strict=True) if a != b])
     owner = {edge: k for k, ring in enumerate(rings) if ring for edge in _edges(ring)}
     waiting = list(range(len(rings)))

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from .convex import ConvexRoom
-from .doubles import seen_once
 from .enclosures import Enclosures
 from .errors import SceneError, TransferFileError
 from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
@@ -210,7 +209,6 @@ def _prepared(
         findings = inspect(scene, planes)
         refuse(findings)
     with recorder.stage("fracture", 0.01):
-        planes = seen_once(planes, list(scene.surfaces.values()))
         geometry = make_geometry(scene, planes, globe, options.max_area, times, options.receivers)
     limits = ChainLimits(options.specular_cutoff, exact_mirrors(geometry.outlines))
     with recorder.stage(LOOKING, 0.02):

@@ -302,12 +302,7 @@ class _Tree:
             mine = np.flatnonzero((level == now) & (enter < distance[ray]))
             if not len(mine):
                 continue
-            below = np.repeat(2 * node[mine], 2) if first < len(self.boxes) else node[mine]
-            if first < len(self.boxes):
-                below[1::2] += 1
-            some, leaf, _ = self._down(
-                rays, np.repeat(ray[mine], len(below) // len(mine)), below, range(first, len(self.boxes))
-            )
+            some, leaf, _ = self._down(rays, *_halves(ray[mine], node[mine]), range(first, len(self.boxes)))
             for k in range(_LEAF):
                 candidate = self.order[leaf * _LEAF + k]
                 real = candidate >= 0
@@ -330,9 +325,15 @@ class _Tree:
             met &= boxes[:, 0, 0] <= boxes[:, 1, 0]  # empty boxes have no sides
             ray, node, enter = ray[met], node[met], enter[met]
             if level + 1 < levels.stop:
-                ray, node = np.repeat(ray, 2), np.repeat(2 * node, 2)
-                node[1::2] += 1
+                ray, node = _halves(ray, node)
         return ray, node, enter
+
+
+def _halves(ray: np.ndarray, node: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of ray and box with both halves of each box on the next level."""
+    node = np.repeat(2 * node, 2)
+    node[1::2] += 1
+    return np.repeat(ray, 2), node
 
 
 def _morton(points: np.ndarray) -> np.ndarray:

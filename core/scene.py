@@ -19,7 +19,6 @@ PLANARITY = 1e-5
 """Largest departure of a vertex from its face's plane, relative to the face's size, that still counts as flat."""
 
 _LARGEST_COORDINATE = 1e100
-_SAME_AREA = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +166,7 @@ def _polygon_pieces(name: str, points: np.ndarray):
 
 def _covers(pieces: np.ndarray, twice_area: float) -> bool:
     """Whether pieces have the area of the loop that they were cut from, which they have not where it meets itself."""
-    return abs(2 * polygons.areas(pieces).sum() - twice_area) <= _SAME_AREA * twice_area
+    return abs(2 * polygons.areas(pieces).sum() - twice_area) <= polygons.SAME_AREA * twice_area
 
 
 def _flat_pieces(points: np.ndarray, unit: np.ndarray):

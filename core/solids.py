@@ -112,8 +112,7 @@ def _bodies(pieces: np.ndarray, counts: np.ndarray, tight: np.ndarray, same: flo
     """(g,) int: closed surface that each piece is a part of; -1 where it is of none."""
     width = pieces.shape[1]
     real = np.arange(width) < counts[:, None]
-    _, corner = np.unique(np.rint(pieces / same).reshape(-1, 3), axis=0, return_inverse=True)
-    corner = corner.reshape(-1, width)
+    corner = polygons.welded(pieces.reshape(-1, 3), same)[1].reshape(-1, width)
     after = np.where(np.arange(width) == counts[:, None] - 1, corner[:, :1], np.roll(corner, -1, axis=1))
     piece = np.repeat(np.arange(len(pieces)), width).reshape(-1, width)
     one, two, owner = corner[real], after[real], piece[real]

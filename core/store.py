@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from .doubles import seen_once
 from .enclosures import Enclosures
 from .errors import TransferFileError
 from .fingerprint import Fingerprint
@@ -152,8 +151,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
     times = float(header["times"])
     globe = Globe(int(header["bands"]))
     planes = find_planes(scene)
-    shown = seen_once(planes, list(scene.surfaces.values()))
-    geometry = make_geometry(scene, shown, globe, options.max_area, times, options.receivers)
+    geometry = make_geometry(scene, planes, globe, options.max_area, times, options.receivers)
     if header["sizes"] != _sizes(geometry):
         raise ValueError("the scene is cut otherwise now")
     lattice = Nodes.of(geometry.fracture, geometry.lattices)
