@@ -15,6 +15,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from . import files, tables
 from . import sun as ephemeris
 from .availability import default_daylight
@@ -172,10 +174,10 @@ def _solve(options: argparse.Namespace) -> None:
         statistics = tables.surface_statistics(result, result.surfaces)
         print_statistics(f"{moment.title} {moment.kind} time; {len(result.illuminance)} faces", statistics)
         surface_rows += [(moment.title, moment.kind, *tables.surface_row(row)) for row in statistics]
-        lux = {name: result.at(points.positions, points.normals).tolist() for name, points in given.points.items()}
+        lux = {name: tables.point_quantities(result, p.positions, p.normals) for name, p in given.points.items()}
         for name, points in given.points.items():
-            rows = zip(points.positions.tolist(), lux[name], strict=True)
-            point_rows += [(moment.title, moment.kind, name, *place, value) for place, value in rows]
+            rows = np.column_stack([points.positions, *lux[name].values()]).tolist()
+            point_rows += [(moment.title, moment.kind, name, *row) for row in rows]
         if "csv" in options.format and not options.no_faces:
             header, faces = tables.face_rows(result, result.surfaces)
             _written(files.write_csv(options.out / f"{stem}_{moment.file_name}_faces.csv", header, faces))
@@ -188,7 +190,7 @@ def _solve(options: argparse.Namespace) -> None:
         header = ["moment", "time", *tables.SURFACE_HEADER]
         _written(files.write_csv(options.out / f"{stem}_surfaces.csv", header, surface_rows))
         if given.points:
-            header = ["moment", "time", "points", "x_m", "y_m", "z_m", "illuminance_lx"]
+            header = ["moment", "time", "points", "x_m", "y_m", "z_m", *(f"{q}_lx" for q in tables.QUANTITIES)]
             _written(files.write_csv(options.out / f"{stem}_points.csv", header, point_rows))
     if "json" in options.format:
         _written(files.write_json(options.out / f"{stem}.json", {"scene": stem, "moments": documents}))
@@ -259,7 +261,7 @@ def _light(options: argparse.Namespace, altitude: float, azimuth: float) -> Dayl
     return Daylight(sky=sky, sun=sun, ground_reflectance=options.ground)
 
 
-def _document(moment: _Moment, result: Result, statistics, lux: dict[str, list[float]], faces: bool) -> dict[str, Any]:
+def _document(moment: _Moment, result: Result, statistics, lux: dict[str, dict], faces: bool) -> dict[str, Any]:
     """What the JSON file says of one hour."""
     return {
         "moment": moment.title,

@@ -91,16 +91,18 @@ class DiscSunlight(Sunlight):
         """See `Sunlight.blur`."""
         return self.direct + self.specular - self.collimated
 
-    def at(self, outlines: Outlines, points, normals) -> np.ndarray:
+    def at(self, outlines: Outlines, points, normals) -> tuple[np.ndarray, np.ndarray]:
         """See `Sunlight.at`: here the disc is clipped by all that each point sees before it."""
-        out = np.zeros(len(points))
+        out = np.zeros((2, len(points)))
         for beam in self.beams:
             near = _ahead(outlines, beam)
             rows = max(1, _TESTS // max(1, near.forms.size + beam.screens.forms.size))
             for start in range(0, len(points), rows):
                 some = slice(start, start + rows)
-                out[some] += beam.share * _at_points(beam, near, self.part, points[some], normals[some])
-        return self.normal_illuminance * out
+                found = beam.share * _at_points(beam, near, self.part, points[some], normals[some])
+                out[min(beam.order, 1), some] += found
+        direct, specular = self.normal_illuminance * out
+        return direct, specular
 
 
 @dataclass(frozen=True, eq=False)

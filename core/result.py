@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
 
@@ -26,6 +26,9 @@ _TOGETHER = 64
 
 INITIAL = ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted")
 """Components of the light that has met no diffuse surface."""
+
+COMPONENTS = (*INITIAL, "interreflected")
+"""Components of all light."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,7 +202,13 @@ class Result:
         faces = self.faces_of(name)
         return float(np.average(self.illuminance[faces], weights=self.areas[faces]))
 
-    def at(self, points, normals, initial: bool = False) -> np.ndarray:
+    @overload
+    def at(self, points, normals, initial: bool = False, components: Literal[False] = False) -> np.ndarray: ...
+
+    @overload
+    def at(self, points, normals, initial: bool = False, *, components: Literal[True]) -> dict[str, np.ndarray]: ...
+
+    def at(self, points, normals, initial: bool = False, components: bool = False):
         """Illuminance at free points, gathered at the points themselves.
 
         Parameters
@@ -209,10 +218,14 @@ class Result:
             block nothing.
         initial : bool
             Leave out light that has met a diffuse surface.
+        components : bool
+            Tell it by origin.
 
         Returns
         -------
-        (m,) float [lx]
+        (m,) float [lx], or dict of str to (m,) float [lx]
+            With ``components`` the names of `Result.components` (``initial``: without "interreflected"), which add up
+            to what comes without.
 
         Raises
         ------
@@ -220,29 +233,37 @@ class Result:
             Where shapes differ, or a value is not finite, or a normal is zero.
         """
         place, normal = checked_points(points, normals)
-        geometry = self.transfer.geometry
+        geometry, field = self.transfer.geometry, self.field
         place = place - geometry.planes.centre
-        out = np.zeros(len(place))
-        out += self.sunlight.at(geometry.outlines, place, normal)
-        exitance, deep = self.field.of_cells(geometry, initial)
-        sources = self.field.sources[: self.field.emitters] if initial else self.field.sources
+        out = {name: np.zeros(len(place)) for name in (INITIAL if initial else COMPONENTS)}
+        out["sun_direct"], out["sun_specular"] = self.sunlight.at(geometry.outlines, place, normal)
+        sent = field.of_cells(geometry, initial)
+        sources = {"emitted": field.sources[: field.emitters], "interreflected": field.sources[field.emitters :]}
         for rows in coplanar(place, normal, geometry.outlines.tolerance):
             n = normal[rows[0]]
             for start in range(0, len(rows), _TOGETHER):
                 some = rows[start : start + _TOGETHER]
-                out[some] += self._gathered(place[some], n, exitance, deep)
-                out[some] += gather_sources(geometry.outlines, sources, place[some], n, self.transfer.limits)
-        return out
+                for name, light in self._gathered(place[some], n, sent).items():
+                    out[name][some] += light
+                for name in sent:
+                    limits = self.transfer.limits
+                    out[name][some] += gather_sources(geometry.outlines, sources[name], place[some], n, limits)
+        return out if components else np.sum(list(out.values()), axis=0)
 
-    def _gathered(self, points, normal, exitance, deep) -> np.ndarray:
-        """(r,) float: light of the sky, and of cells, on points of one plane [lx]."""
+    def _gathered(self, points, normal, sent: dict[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np.ndarray]:
+        """Light of the sky, and of cells that ``sent`` it, on points of one plane by origin, (r,) float each [lx]."""
         transfer = self.transfer
         if transfer.unhidden_cells is not None and transfer.unhidden_cells.holds(points, normal).all():
-            return transfer.unhidden_cells.factors(points, normal)[:, :-1] @ exitance
+            factors = transfer.unhidden_cells.factors(points, normal)[:, :-1]
+            return {name: factors @ exitance for name, (exitance, _) in sent.items()}
         sight = sight_of(transfer.geometry, transfer.limits, normal, float(normal @ points[0]))
         seen = gather(sight, points, transfer.geometry.cells)
-        light = np.pi * (seen.sky @ self.sky) + seen.patches @ exitance
-        return light if seen.deep is None else light + seen.deep @ deep
+        light = {"sky_direct": np.pi * (seen.sky_direct @ self.sky)}
+        if seen.sky_specular is not None:
+            light["sky_specular"] = np.pi * (seen.sky_specular @ self.sky)
+        for name, (exitance, deep) in sent.items():
+            light[name] = seen.patches @ exitance + (0.0 if seen.deep is None else seen.deep @ deep)
+        return light
 
     @cached_property
     def balance(self) -> Balance:

@@ -70,21 +70,22 @@ class Field:
     by_patches: np.ndarray
     adjusted: float
 
-    def of_cells(self, geometry: Geometry, initial: bool) -> tuple[np.ndarray, np.ndarray]:
-        """Exitance of `Geometry.cells`, and of what many mirrors show of the bright few, both (c,) float [lm/m²].
+    def of_cells(self, geometry: Geometry, initial: bool) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Exitance of `Geometry.cells`, and of what many mirrors show of the bright few, by the component it makes.
 
-        Within a patch reflected light is uneven as the light on its elements is. ``initial`` leaves it out.
+        Both (c,) float [lm/m²]. Within a patch reflected light is uneven as the light on its elements is; ``initial``
+        leaves it out.
         """
-        emitted, reflected, deep = self.patch_emitted, np.zeros(len(self.by_patches)), self.deep_emitted
+
+        def on_cells(patches: np.ndarray, uneven: np.ndarray | float = 1.0) -> np.ndarray:
+            return geometry.cell_means(uneven * geometry.from_patches(patches))
+
+        sent = {"emitted": (on_cells(self.patch_emitted), on_cells(self.deep_emitted))}
         if not initial:
             mean = geometry.from_patches(patch_means(geometry, self.by_patches))
             uneven = np.divide(self.by_patches, mean, out=np.ones_like(mean), where=mean > 0)
-            reflected = uneven * geometry.from_patches(self.patch_exitance)
-            deep = deep + self.deep_reflected
-        return (
-            geometry.cell_means(geometry.from_patches(emitted) + reflected),
-            geometry.cell_means(geometry.from_patches(deep)),
-        )
+            sent["interreflected"] = (on_cells(self.patch_exitance, uneven), on_cells(self.deep_reflected))
+        return sent
 
 
 def solve_light(

@@ -105,10 +105,9 @@ class Sunlight:
         """(e,) float, or 0: what elements get besides the patches; adds up to about nothing [lx]."""
         return 0.0
 
-    def at(self, outlines: Outlines, points, normals) -> np.ndarray:
-        """(m,) float: sunlight at free points, straight and by mirrors [lx]."""
-        direct, specular = light_points(outlines, self.beams, points, normals)
-        return direct + specular
+    def at(self, outlines: Outlines, points, normals) -> tuple[np.ndarray, np.ndarray]:
+        """Sunlight at free points, straight and by mirrors, both (m,) float [lx]."""
+        return light_points(outlines, self.beams, points, normals)
 
 
 _ROUNDING = 1e-11

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .result import Result, Side
+from .result import COMPONENTS, INITIAL, Result, Side
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,20 @@ def surface_statistics(result: Result, names: Iterable[str]) -> list[SurfaceStat
     return rows
 
 
+QUANTITIES = ("illuminance", "initial", *COMPONENTS)
+"""What is told of faces and points: the total, what of it has met no diffuse surface, and the components."""
+
+
 def quantities(side: Side) -> dict[str, NDArray[np.float64]]:
     """Return all illuminances of a side by name: total, initial and the components, (n,) [lx] each."""
     return {"illuminance": side.illuminance, "initial": side.initial, **side.components}
+
+
+def point_quantities(result: Result, points, normals) -> dict[str, NDArray[np.float64]]:
+    """Return the same of free points, (m,) [lx] each; see `Result.at`."""
+    parts = result.at(points, normals, components=True)
+    initial = np.sum([parts[name] for name in INITIAL], axis=0)
+    return {"illuminance": initial + parts["interreflected"], "initial": initial, **parts}
 
 
 SURFACE_HEADER = ("surface", "side", "area_m2", "minimum_lx", "mean_lx", "maximum_lx", "uniformity")
@@ -89,7 +100,10 @@ def face_rows(result: Result, names: Iterable[str]) -> tuple[list[str], Iterator
 
 
 def document(
-    result: Result, statistics: Iterable[SurfaceStatistics], points: dict[str, list[float]], faces: Iterable[str] | None
+    result: Result,
+    statistics: Iterable[SurfaceStatistics],
+    points: dict[str, dict[str, NDArray[np.float64]]],
+    faces: Iterable[str] | None,
 ) -> dict[str, Any]:
     """Return what a JSON file says of a result.
 
@@ -97,8 +111,8 @@ def document(
     ----------
     result : Result
     statistics : iterable of SurfaceStatistics
-    points : dict of str to list of float
-        Illuminances at sets of free points [lx].
+    points : dict of str to dict
+        `point_quantities` of sets of free points.
     faces : iterable of str or None
         Surfaces whose faces are listed; None: no list of faces.
 
@@ -112,7 +126,10 @@ def document(
         "sky_horizontal_illuminance_lx": result.light.sky_illuminance,
         "sun_horizontal_illuminance_lx": result.light.sun_illuminance,
         "surfaces": [dict(zip(SURFACE_HEADER, surface_row(row), strict=True)) for row in statistics],
-        "points": points,
+        "points": {name: values["illuminance"].tolist() for name, values in points.items()},
+        "point_quantities_lx": {
+            name: {quantity: lux.tolist() for quantity, lux in values.items()} for name, values in points.items()
+        },
         "balance_lm": {
             "entering": balance.entering,
             "absorbed": dict(balance.absorbed),

@@ -173,7 +173,7 @@ def _with_name(path: Path, ending: str) -> Path:
 def _document(moment: str, kind: str, site, solved: job.Job, rows, faces: bool) -> dict:
     """What the JSON file says of one hour: as the console command's, with work planes for points."""
     place = light.sun_place(site)
-    points = {reading.grid.object_name: reading.values["illuminance"].tolist() for reading in solved.readings}
+    points = {reading.grid.object_name: reading.values for reading in solved.readings}
     return {
         "moment": moment,
         "time": kind,

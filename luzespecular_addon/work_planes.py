@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import core as luz
+from ..core import tables
 from . import mesh_arrays, writeback
 
 HEIGHT = 0.75
 """Usual height of a work plane above the floor [m] (EN 12464-1 and NBR ISO/CIE 8995-1 for desks)."""
-
-QUANTITIES = ("illuminance", "initial", "interreflected")
-"""What is read at points; the other parts of the light are known of surfaces alone."""
 
 _CHUNK = 128
 
@@ -47,7 +45,7 @@ class Grid:
 
 @dataclass(frozen=True)
 class Reading:
-    """What was read on one grid: (m,) floats [lx] for each of `QUANTITIES`."""
+    """What was read on one grid: (m,) floats [lx] for each of `tables.QUANTITIES`."""
 
     grid: Grid
     values: dict[str, NDArray[np.float64]]
@@ -135,16 +133,15 @@ def read(result: luz.Result, grids_: Iterable[Grid], progress: Callable[[float, 
     count = sum(len(grid.points) for grid in grids_)
     readings, done = [], 0
     for grid in grids_:
-        total, initial = np.full((2, len(grid.points)), np.nan)
-        for start in range(0, len(total), _CHUNK):
+        values = {name: np.full(len(grid.points), np.nan) for name in tables.QUANTITIES}
+        for start in range(0, len(grid.points), _CHUNK):
             if not progress(done / count, "work planes"):
                 raise luz.Cancelled("Cancelled at: work planes")
             some = slice(start, start + _CHUNK)
-            total[some] = result.at(grid.points[some], grid.normals[some])
-            initial[some] = result.at(grid.points[some], grid.normals[some], initial=True)
-            done += len(total[some])
-        parts = (total, initial, np.maximum(total - initial, 0.0))  # rounding aside, nothing is negative
-        readings.append(Reading(grid, dict(zip(QUANTITIES, parts, strict=True))))
+            for name, lux in tables.point_quantities(result, grid.points[some], grid.normals[some]).items():
+                values[name][some] = lux
+            done += len(grid.points[some])
+        readings.append(Reading(grid, values))
     return readings
 
 
@@ -190,7 +187,7 @@ def _area_scale(object_: bpy.types.Object) -> float:
 
 HEADER = (
     *("work_plane", "x_m", "y_m", "z_m", "normal_x", "normal_y", "normal_z"),
-    *(f"{quantity}_lx" for quantity in QUANTITIES),
+    *(f"{quantity}_lx" for quantity in tables.QUANTITIES),
 )
 
 
@@ -198,8 +195,9 @@ def rows(scene: bpy.types.Scene, unit_scale: float) -> Iterator[tuple[str | floa
     """Yield a row for `HEADER` for each point that was read."""
     for grid in grids(scene, unit_scale):
         mesh = scene.objects[grid.object_name].data
-        found = [mesh_arrays.read_face_values(mesh, writeback.attribute_of(name), np.float32) for name in QUANTITIES]
-        if found[0] is not None:  # a file solved by an earlier version knows the total alone
+        names = map(writeback.attribute_of, tables.QUANTITIES)
+        found = [mesh_arrays.read_face_values(mesh, name, np.float32) for name in names]
+        if found[0] is not None:  # a file solved by an earlier version knows less
             known = [np.full(len(found[0]), np.nan) if values is None else values for values in found]
             for row in np.column_stack([grid.points, grid.normals, *known]).tolist():
                 yield (grid.object_name, *row)

@@ -8,6 +8,7 @@ from typing import ClassVar
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
+from ...core import tables
 from .. import placements, work_planes
 from ..choices import QUANTITY_ITEMS
 from ..legend import label
@@ -43,7 +44,7 @@ def _draw_plane(box: bpy.types.UILayout, plane: bpy.types.Object, scene: bpy.typ
     row = box.row()
     row.label(text=plane.name, icon="MESH_GRID", translate=False)
     shown = scene.luzespecular.display.quantity
-    quantity = shown if shown in work_planes.QUANTITIES else work_planes.QUANTITIES[0]
+    quantity = shown if shown in tables.QUANTITIES else tables.QUANTITIES[0]  # errors are known of surfaces alone
     found = work_planes.statistics_of(plane, placements.unit_scale(scene), quantity)
     results = scene.luzespecular.results
     if found is None:

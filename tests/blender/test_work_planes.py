@@ -5,6 +5,7 @@ import csv
 import numpy as np
 import pytest
 
+PARTS = ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted")
 OPEN_SKY = 10_000.0
 
 
@@ -125,6 +126,10 @@ def test_parts_of_the_light_are_read_too(addon, bpy, plane):
     points = addon.mesh_arrays.polygon_centres(plane.data).astype(float)
     initial = result.at(points, np.tile([0.0, 0.0, 1.0], (16, 1)), initial=True)
     np.testing.assert_allclose(lux(addon, plane, "illuminance_initial"), initial, rtol=1e-4)
+    parts = result.at(points, np.tile([0.0, 0.0, 1.0], (16, 1)), components=True)
+    for name, values in parts.items():
+        np.testing.assert_allclose(lux(addon, plane, f"illuminance_{name}"), values, rtol=1e-4, err_msg=name)
+    assert parts["sky_direct"].max() > 1_000
     reflected = lux(addon, plane, "illuminance_interreflected")
     assert reflected.max() > 10.0
     np.testing.assert_allclose(lux(addon, plane), initial + reflected, rtol=1e-4)
@@ -138,7 +143,10 @@ def test_parts_of_the_light_are_read_too(addon, bpy, plane):
     settings.quantity, settings.unit = "interreflected", "FACTOR"
     (shown,) = [one for one in addon.display.shown_meshes(bpy.context.scene) if one.object_ == plane]
     np.testing.assert_allclose(shown.values, 100.0 * reflected / OPEN_SKY, rtol=1e-3)
-    settings.quantity = "sky_direct"
+    settings.quantity, settings.unit = "sky_direct", "LUX"
+    (shown,) = [one for one in addon.display.shown_meshes(bpy.context.scene) if one.object_ == plane]
+    np.testing.assert_allclose(shown.values, parts["sky_direct"], rtol=1e-4)
+    settings.quantity = "error"
     (shown,) = [one for one in addon.display.shown_meshes(bpy.context.scene) if one.object_ == plane]
     assert np.isnan(shown.values).all()
     bpy.ops.luzespecular.clear_results()
@@ -238,8 +246,9 @@ def test_points_are_saved(addon, bpy, plane, tmp_path):
     assert [float(row["illuminance_lx"]) for row in rows] == pytest.approx(lux(addon, plane).tolist(), rel=1e-4)
     assert {row["z_m"] for row in rows} == {"0.75"}
     for row in rows:
-        total, initial, reflected = (float(row[f"{name}_lx"]) for name in addon.work_planes.QUANTITIES)
-        assert total == pytest.approx(initial + reflected, rel=1e-4)
+        known = {name: float(row[f"{name}_lx"]) for name in ("illuminance", "initial", *PARTS, "interreflected")}
+        assert known["illuminance"] == pytest.approx(known["initial"] + known["interreflected"], rel=1e-4)
+        assert known["initial"] == pytest.approx(sum(known[name] for name in PARTS), rel=1e-4)
     bpy.ops.luzespecular.clear_results()
     assert not bpy.ops.luzespecular.save_work_planes.poll()
 

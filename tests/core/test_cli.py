@@ -96,7 +96,13 @@ def test_solves_hours_by_the_clock_and_writes_everything(scene, tmp_path, capsys
     (desk,) = [row for row in table(out / "casa à luz_points.csv") if row["moment"].endswith("12:30")]
     assert float(desk["illuminance_lx"]) == pytest.approx(expected.at([[0.5, 0.5, 3]], [[0, 0, 1]])[0], rel=1e-6)
 
+    parts = expected.at([[0.5, 0.5, 3]], [[0, 0, 1]], components=True)
+    assert {name: float(desk[f"{name}_lx"]) for name in parts} == pytest.approx(
+        {name: values[0] for name, values in parts.items()}, rel=1e-6
+    )
+
     document = json.loads((out / "casa à luz.json").read_text("utf-8"))["moments"][1]
+    assert document["point_quantities_lx"]["desk"]["sky_direct"] == pytest.approx(parts["sky_direct"], rel=1e-6)
     assert document["points"]["desk"] == pytest.approx([float(desk["illuminance_lx"])], rel=1e-6)
     assert document["balance_lm"]["entering"] == pytest.approx(expected.balance.entering, rel=1e-6)
     assert len(document["faces"]["rows"]) == len(faces)

@@ -207,7 +207,7 @@ def test_a_room_with_mirrors_against_many_suns():
     points = geometry.element_points[::5]
     normals = geometry.element_normals[::5]
     where = (geometry.fracture.elements, geometry.fracture.element_sheet, geometry.planes.outline_sheet)
-    mean, at = np.zeros((2, len(where[0]))), np.zeros(len(points))
+    mean, at = np.zeros((2, len(where[0]))), np.zeros((2, len(points)))
     for direction in many_suns(SLANTED):
         one = trace_sun(geometry.outlines, direction, 1 / 100, 1e-3, lambda: None)
         mean += one.on_elements(*where)
@@ -215,7 +215,7 @@ def test_a_room_with_mirrors_against_many_suns():
     got = np.array(sunlight.on_elements())
     assert (mean > 0.05).any(axis=1).all()
     assert np.abs(got - mean).max() < 3e-3
-    assert np.abs(sunlight.at(geometry.outlines, points, normals) - at).max() < 1.5e-2
+    assert np.abs(np.array(sunlight.at(geometry.outlines, points, normals)) - at).max() < 1.5e-2
     area = geometry.fracture.element_areas
     np.testing.assert_allclose(got @ area, mean @ area, rtol=2e-4)
 

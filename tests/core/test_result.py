@@ -135,6 +135,54 @@ def test_initial_at_points_is_that_of_no_cycles(result):
     assert (result.at(points, normals) > none.at(points, normals)).all()
 
 
+def test_components_at_points_add_up(result):
+    rng = np.random.default_rng(5)
+    points, normals = rng.uniform(0.1, 2.9, (30, 3)), rng.normal(size=(30, 3))
+    parts = result.at(points, normals, components=True)
+    assert list(parts) == list(result.components)
+    assert all(values.shape == (30,) and values.min() >= 0 for values in parts.values())
+    assert all(parts[name].max() > 1 for name in parts)
+    np.testing.assert_allclose(sum(parts.values()), result.at(points, normals), rtol=1e-12)
+    initial = result.at(points, normals, initial=True, components=True)
+    assert list(initial) == [name for name in parts if name != "interreflected"]
+    for name, values in initial.items():
+        np.testing.assert_allclose(values, parts[name], rtol=1e-12)
+    assert all(len(values) == 0 for values in result.at([], [], components=True).values())
+
+
+def test_components_at_points_agree_with_faces():
+    """Means over the floor of each by itself: what `at` gathers at centroids, and what faces follow from."""
+    fine = prepare_coarse(room(), max_area=0.02, elements=2000, patches=400).solve(LIGHT)
+    faces = fine.faces_of("floor")
+    got = fine.at(fine.centroids[faces], fine.normals[faces], components=True)
+    for name, values in fine.components.items():
+        mean = np.average(values[faces], weights=fine.areas[faces])
+        assert np.average(got[name], weights=fine.areas[faces]) == pytest.approx(mean, rel=0.03, abs=2.0), name
+
+
+@pytest.mark.parametrize("without", ["sky", "sun", "emitted"])
+def test_components_at_points_are_each_their_own_light(without):
+    """What one light gives comes in its own components, and in interreflection."""
+    scene = room() if without != "emitted" else box(WHITE, (3, 3, 3), without=("north",))
+    kept = {name: getattr(LIGHT, name) for name in ("sky", "sun") if name != without}
+    solved = prepare_coarse(scene, elements=400, patches=200).solve(luz.Daylight(**kept))
+    parts = solved.at([[1.5, 2.0, 0.0], [0.5, 2.5, 1.0]], [UP, [0, 0.6, 0.8]], components=True)
+    for name, values in parts.items():
+        assert (values == 0).all() if name.startswith(without) else name.endswith("_specular") or values.any(), name
+
+
+def test_sunlight_of_a_disc_is_told_apart_too():
+    sun = luz.Sun(altitude=40, azimuth=0, normal_illuminance=80_000, disc=True)
+    transfer = prepare_coarse(room(), elements=400, patches=200)
+    points, normals = [[1.5, 1.8, 0.0], [1.5, 0.7, 2.9], [1.5, 2.7, 1.6]], [UP, [0, 0, -1], UP]
+    broad, sharp = (
+        transfer.solve(luz.Daylight(sun=one)).at(points, normals, components=True) for one in (sun, LIGHT.sun)
+    )
+    for name in ("sun_direct", "sun_specular"):
+        np.testing.assert_allclose(broad[name], sharp[name], rtol=1e-3, atol=1e-6)
+        assert sharp[name].max() > 1_000
+
+
 def test_points_are_each_their_own(result):
     rng = np.random.default_rng(2)
     points = rng.uniform(0.1, 2.9, (40, 3))
