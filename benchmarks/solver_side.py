@@ -243,7 +243,7 @@ def _without(run: Callable[[], np.ndarray], *patches) -> Callable[[], np.ndarray
 
 
 def _chains(options: dict) -> Skip:
-    from luzespecular.specular import Outlines
+    from luzespecular.outlines import Outlines
 
     room = rooms.light_shelf_room()
     sky = room.daylight(12.0, sun=False)
@@ -288,7 +288,7 @@ def _night(options: dict) -> Skip:
 
 
 def _backs(options: dict) -> Skip:
-    from luzespecular.specular import Outlines
+    from luzespecular.outlines import Outlines
 
     room = rooms.light_shelf_room()
     transfer = luz.prepare(room.scene("S1"), **options)

@@ -11,7 +11,8 @@ from .arrays import dots
 from .globe import Globe, Hemisphere
 from .patches import Patches
 from .planes import Planes
-from .specular import GroupSight, Sighting
+from .sighting import Sighting
+from .specular import GroupSight
 from .visibility import OPEN
 
 _BESIDE_BORDERS = 2e-4

@@ -15,11 +15,12 @@ from .fracture import Fracture, fracture
 from .gather import Targets
 from .globe import Globe
 from .layout import Layout
+from .outlines import Outlines
 from .patches import make_patches
 from .planes import Planes
 from .scene import Scene
 from .solids import find_solids
-from .specular import MANY_OUTLINES, ChainLimits, GroupSight, Outlines
+from .specular import MANY_OUTLINES, ChainLimits, GroupSight
 
 PATCHES = 1_000
 """Patches that exitance is resolved in, about; runs of cells get more where light is uneven."""

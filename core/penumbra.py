@@ -16,9 +16,10 @@ import numpy as np
 
 from . import disc, polygons
 from .materials import Material
+from .outlines import Outlines
 from .projection import HalfSpace
 from .screens import Pieces, Screens
-from .specular import DEEPEST_CHAIN, Outlines
+from .specular import DEEPEST_CHAIN
 from .sun import Sun
 from .sunlight import Sunlight, trace_sun, wide
 

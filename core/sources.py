@@ -15,8 +15,9 @@ import numpy as np
 
 from . import polygons
 from .materials import Material
+from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
-from .specular import ChainLimits, Outlines
+from .specular import ChainLimits
 
 _FAINT = 1e-4
 """Of the illuminance that the sources' flux would be, spread over all surfaces: what gives less is not looked for."""

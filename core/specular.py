@@ -8,18 +8,16 @@ rounded. Chains go on until the product of reflectances falls below a cut-off; w
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from .arrays import dots, pick
 from .globe import Hemisphere
 from .materials import Material
+from .outlines import Outlines
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
-from .rays import Flight, RayScene
-from .solids import Solids
-from .visibility import SHARED, Partial, View, look
+from .sighting import Rays, Sighting, ray_sighting
+from .visibility import Partial, look
 
 DEEPEST_CHAIN = 200
 """No chain is followed further, even between perfect mirrors."""
@@ -42,123 +40,6 @@ _WINDOWS = 2
 
 _WITHIN = 4e-5
 """Angle from a mirror's edge that centres of parts keep [rad], so that nothing that stands at the edge is before it."""
-
-
-@dataclass(frozen=True, eq=False)
-class Outlines:
-    """The scene's convex outlines with what light does at them.
-
-    Attributes
-    ----------
-    vertices : (o, w, 3) float, padded
-    normals : (o, 3) float
-    offsets : (o,) float
-    materials : list of Material, one per outline
-    two_sided : (o,) bool
-    tolerance : float
-        Length below which points count as lying on a plane [m].
-    solids : Solids, optional
-    """
-
-    vertices: np.ndarray
-    normals: np.ndarray
-    offsets: np.ndarray
-    materials: list[Material]
-    two_sided: np.ndarray
-    tolerance: float
-    solids: Solids | None = None
-
-    @cached_property
-    def rays(self) -> RayScene:
-        """The outlines, to shoot single rays at."""
-        return RayScene(self.vertices, self.normals, self.offsets, self.tolerance)
-
-    @cached_property
-    def plain_mirrors(self) -> np.ndarray:
-        """(2, o) float: reflectance of fronts and backs that do nothing but mirror, 0 for all others."""
-        plain = np.zeros((2, len(self.materials)))
-        for o, m in enumerate(self.materials):
-            if m.refractive_index is None and not (m.is_transparent or m.diffuse_reflectance or m.exitance):
-                plain[0, o] = m.specular_reflectance
-                plain[1, o] = m.specular_reflectance if self.two_sided[o] else 0.0
-        return plain
-
-    @cached_property
-    def whole(self) -> Obstacles:
-        """All outlines, uncut, as obstacles."""
-        bounding = np.ones(self.vertices.shape[:2], bool)
-        return Obstacles(np.arange(len(self.vertices)), self.vertices, bounding, self.normals, self.offsets)
-
-    @cached_property
-    def back_counts(self) -> np.ndarray:
-        """(o,) bool: whether light on the back goes anywhere, onto a receiver or on by a mirror."""
-        return self.two_sided | np.array([m.reflects_both_sides for m in self.materials], bool)
-
-    def unseen_backs(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
-        """(o,) bool: outlines whose backs none of some receivers of one plane ``(r, 3)`` can see."""
-        if self.solids is None:
-            return np.zeros(len(self.vertices), bool)
-        return self.solids.unseen_backs(points, normal)
-
-    @cached_property
-    def any_specular(self) -> bool:
-        """Whether any surface mirrors or transmits regularly."""
-        return any(m.is_specular or m.is_transparent for m in self.materials)
-
-
-@dataclass(frozen=True, eq=False)
-class Sighting:
-    """One step of what a group of receivers sees.
-
-    Attributes
-    ----------
-    rows : (r,) int
-        Receivers of the group that this sighting is for.
-    points : (r, 3) float
-        Where they look from: themselves, or their mirror image.
-    normal : (3,) float
-        Their plane's normal, mirrored likewise.
-    beams : Beams
-    obstacles : Obstacles
-    view : View
-    weights : (r, k) float
-        Cosine weight of each beam times the reflectances and transmittances on the way here; 0 where the beam did
-        not come.
-    mirrors : int
-        How many mirrors were on the way; for single rays one number stands for all of a kind, see `ChainLimits.kind`.
-    outlines : Outlines
-    partial : Partial or None
-        Beams of which only a part came here.
-    rays : bool
-        Whether each row is a single ray, wholly described by one part.
-    """
-
-    rows: np.ndarray
-    points: np.ndarray
-    normal: np.ndarray
-    beams: Beams
-    obstacles: Obstacles
-    view: View
-    weights: np.ndarray
-    mirrors: int
-    outlines: Outlines
-    partial: Partial | None = None
-    rays: bool = False
-
-    def dead_share(self, obstacle: int, back: bool) -> float:
-        """Share of the light that is lost on an obstacle's side because that side is no receiver."""
-        o = self.obstacles.outlines[obstacle]
-        if not back or self.outlines.two_sided[o]:
-            return 0.0
-        material = self.outlines.materials[o]
-        return material.hemispherical_absorptance if material.is_transparent else 1.0
-
-    def part_weights(self) -> np.ndarray:
-        """(p,) float: weight of each part of a shared beam, with the cosine at the part's own centre."""
-        v = self.view
-        if self.rays:
-            return self.weights[:, 0]
-        return pick(self.weights, v.part_row, v.part_beam) * v.part_share
 
 
 @dataclass
@@ -268,143 +149,6 @@ class _Arriving:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class _Rays:
-    """Single rays on their way: all arrays of length n."""
-
-    rows: np.ndarray
-    points: np.ndarray
-    directions: np.ndarray
-    weights: np.ndarray
-    throughput: np.ndarray
-    mirrors: np.ndarray
-    depth: np.ndarray
-
-    @classmethod
-    def of(cls, rows, points, directions, weights, throughput: float, mirrors: int, depth: int) -> _Rays:
-        """One ray for each beam ``(r, k)`` of any weight."""
-        row, beam = np.nonzero(weights)
-        n = len(row)
-        return cls(
-            rows[row],
-            points[row],
-            directions[beam],
-            weights[row, beam],
-            np.full(n, throughput),
-            np.full(n, mirrors),
-            np.full(n, depth),
-        )
-
-    @classmethod
-    def beyond(
-        cls,
-        rows,
-        points,
-        beams: Beams,
-        weights,
-        partial: Partial | None,
-        throughput: float,
-        mirrors: int,
-        past: HalfSpace,
-        depth: int,
-    ) -> _Rays:
-        """Rays of mirrored receivers, set forward to the mirror's plane; partial beams in their own direction."""
-        rays = cls.of(rows, points, beams.directions, weights, throughput, mirrors, depth)
-        directions = rays.directions
-        if partial is not None:
-            place = np.zeros(weights.shape, np.int64)
-            place[weights > 0] = np.arange(len(rays.rows))
-            directions[place[partial.row, partial.beam]] = partial.direction / np.linalg.norm(
-                partial.direction, axis=1, keepdims=True
-            )
-        ahead = (past.offset - rays.points @ past.normal) / (directions @ past.normal)
-        return replace(rays, points=rays.points + ahead[:, None] * directions, directions=directions)
-
-    @classmethod
-    def joined(cls, parts: list[_Rays]) -> _Rays:
-        """All rays in one."""
-        if not parts:
-            none = np.zeros(0)
-            return cls(
-                none.astype(np.int64),
-                np.zeros((0, 3)),
-                np.zeros((0, 3)),
-                none,
-                none,
-                none.astype(np.int64),
-                none.astype(np.int64),
-            )
-        return cls(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)))
-
-    def take(self, index) -> _Rays:
-        """Some of the rays."""
-        return _Rays(*(getattr(self, f.name)[index] for f in fields(self)))
-
-    def flown(self, flight: Flight) -> _Rays:
-        """The rays on the last stretch of their flight."""
-        return _Rays(
-            self.rows,
-            flight.points,
-            flight.directions,
-            self.weights * flight.factor,
-            self.throughput * flight.factor,
-            self.mirrors + flight.mirrors,
-            self.depth + flight.mirrors,
-        )
-
-    def onward(self, places, share, normal, kind: str) -> _Rays:
-        """The rays after a mirror or a pane."""
-        mirror = kind == "mirror"
-        return _Rays(
-            self.rows,
-            places,
-            reflect(self.directions, normal) if mirror else self.directions,
-            self.weights * share,
-            self.throughput * share,
-            self.mirrors + mirror,
-            self.depth + 1,
-        )
-
-
-def _ray_sighting(outlines: Outlines, rays: _Rays, outline, mirrors: int, beams: Beams) -> Sighting:
-    n = len(rays.rows)
-    view = View(
-        seen=np.full((n, 0), SHARED, np.int32),
-        part_row=np.arange(n),
-        part_beam=np.zeros(n, np.int64),
-        part_seen=outline,
-        part_share=np.ones(n),
-        part_direction=rays.directions,
-        nearest=np.zeros((n, 0), np.float32),
-        columns={},
-        heights=_Heights(outlines, rays.points),
-    )
-    return Sighting(
-        rays.rows,
-        rays.points,
-        np.zeros(3),
-        beams,
-        outlines.whole,
-        view,
-        rays.weights[:, None],
-        mirrors,
-        outlines,
-        rays=True,
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Heights:
-    """Signed distances from points to outlines' planes, found only where asked for: ``heights[rows, outlines]``."""
-
-    outlines: Outlines
-    points: np.ndarray
-
-    def __getitem__(self, key):
-        row, outline = key
-        return self.outlines.offsets[outline] - dots(self.points[row], self.outlines.normals[outline])
-
-
 @dataclass
 class GroupSight:
     """Sightings of receivers that share one plane.
@@ -450,7 +194,7 @@ class GroupSight:
         unseen_backs = self.outlines.unseen_backs(points, hemisphere.normal)
         left = []
         if len(self.outlines.vertices) > MANY_OUTLINES:
-            left.append(_Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, 0, 0))
+            left.append(Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, 0, 0))
             stack = []
         else:
             stack = [(np.arange(len(points)), points, horizon, (), beams, weights, None, 1.0, 0, ())]
@@ -477,9 +221,9 @@ class GroupSight:
                 stack += self._continue(sighting, horizon, throughput, chain, truncated, left)
         yield from self._trace(left, truncated, checkpoint)
 
-    def _trace(self, left: list[_Rays], truncated, checkpoint) -> Iterator[Sighting]:
+    def _trace(self, left: list[Rays], truncated, checkpoint) -> Iterator[Sighting]:
         """Follow rays one by one, from where the mirrored view was too narrow to be worth sharing."""
-        rays = _Rays.joined(left)
+        rays = Rays.joined(left)
         none = Beams.of(self.hemisphere).take(np.zeros(0, np.int64))
         while len(rays.rows):
             checkpoint()
@@ -498,7 +242,7 @@ class GroupSight:
             kinds = np.where(flight.faint, -1, self.limits.kind(rays.mirrors))
             for kind in np.unique(kinds[kinds >= 0]):
                 mine = np.flatnonzero(kinds == kind)
-                yield _ray_sighting(self.outlines, rays.take(mine), outline[mine], int(kind), none)
+                yield ray_sighting(self.outlines, rays.take(mine), outline[mine], int(kind), none)
             met = np.flatnonzero(outline >= 0)
             place = rays.points[met] + distance[met, None] * rays.directions[met]
             onward = []
@@ -510,7 +254,7 @@ class GroupSight:
                 here_rays = rays.take(met[here])
                 cosine = here_rays.directions @ self.outlines.normals[o]
                 onward += self._onward(here_rays, place[here], int(o), cosine < 0, cosine, truncated)
-            rays = _Rays.joined(onward)
+            rays = Rays.joined(onward)
 
     def _cut(self, chain, half_spaces) -> Obstacles:
         if chain not in self._obstacles:
@@ -556,7 +300,7 @@ class GroupSight:
                     few = np.count_nonzero(onward.weights) < _FEW_BEAMS
                     if chain and (few or len(chain) >= _LOOKED_INTO):
                         left.append(
-                            _Rays.beyond(
+                            Rays.beyond(
                                 rows, points, beams, onward.weights, partial, product, mirrors, past, len(chain) + 1
                             )
                         )
@@ -592,7 +336,7 @@ class GroupSight:
             planes = np.concatenate([window[:, -_WINDOWS * planes.shape[1] :], planes], axis=1)
         return Partial(onward.row, onward.beam, direction, planes)
 
-    def _onward(self, rays: _Rays, places, o: int, front, cosine, truncated) -> list[_Rays]:
+    def _onward(self, rays: Rays, places, o: int, front, cosine, truncated) -> list[Rays]:
         """Rays that met an outline at ``places``, after it: those bright enough to follow."""
         onward = []
         for side in (True, False):

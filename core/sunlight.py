@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import polygons
+from .outlines import Outlines
 from .projection import reflect
-from .specular import DEEPEST_CHAIN, Outlines
+from .specular import DEEPEST_CHAIN
 
 
 @dataclass(frozen=True, eq=False)

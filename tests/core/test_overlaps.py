@@ -8,8 +8,9 @@ from test_visibility import seen_shares
 import luzespecular as luz
 from luzespecular import polygons
 from luzespecular.materials import Material
+from luzespecular.outlines import Outlines
 from luzespecular.sources import Source, gather_sources
-from luzespecular.specular import ChainLimits, Outlines
+from luzespecular.specular import ChainLimits
 
 SIZE = np.array([4.0, 3.0, 2.5])
 BEYOND = 500.0

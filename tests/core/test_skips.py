@@ -5,7 +5,7 @@ import pytest
 from builders import BLACK, UNIFORM, box, prepare_coarse
 
 import luzespecular as luz
-from luzespecular import specular, sunlight
+from luzespecular import outlines, specular, sunlight
 from luzespecular.geometry import make_geometry
 from luzespecular.globe import Globe
 from luzespecular.nodes import Nodes
@@ -71,7 +71,7 @@ def test_backs_that_receive_nothing_are_left_in_shadow(monkeypatch):
     assert reasons(result.stages)["sun patches"] == "the Sun reaches no side that receives"
     assert "sun patches" not in reasons(transfer.solve(noon()).stages)
     every = np.ones(len(transfer.geometry.outlines.vertices), bool)
-    monkeypatch.setattr(specular.Outlines, "back_counts", every)
+    monkeypatch.setattr(outlines.Outlines, "back_counts", every)
     assert_same(result, transfer.solve(noon(azimuth=180.0)))
     with_backs = transfer.solve(noon())
     monkeypatch.undo()

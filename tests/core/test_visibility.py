@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from luzespecular import polygons
 from luzespecular.globe import Globe
 from luzespecular.materials import Material
-from luzespecular.specular import ChainLimits, GroupSight, Outlines
+from luzespecular.outlines import Outlines
+from luzespecular.specular import ChainLimits, GroupSight
 from luzespecular.visibility import OPEN
 
 GLOBES = {bands: Globe(bands) for bands in (24, 60)}
