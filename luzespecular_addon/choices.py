@@ -46,6 +46,13 @@ UNIT_ITEMS = (
     ("FACTOR", "DF (%)", "Daylight factor: share of what the whole sky, without Sun, gives an open horizontal plane"),
 )
 
+CORNER_ITEMS = (
+    ("BOTTOM_LEFT", "Bottom Left", "In the lower left corner of the picture"),
+    ("BOTTOM_RIGHT", "Bottom Right", "In the lower right corner of the picture"),
+    ("TOP_LEFT", "Top Left", "In the upper left corner of the picture"),
+    ("TOP_RIGHT", "Top Right", "In the upper right corner of the picture"),
+)
+
 SCALE_ITEMS = (
     ("VIRIDIS", "Viridis", "Even steps of lightness, safe for the colour-blind"),
     ("CIVIDIS", "Cividis", "Blue to yellow, made for the colour-blind"),

@@ -26,6 +26,8 @@ NOT_COMPUTED_SRGB = ((0.30, 0.30, 0.30), (0.62, 0.62, 0.62))
 
 _TABLE = 4096  # colours of a scale that faces are given; far more than the eye tells apart
 
+_ROUNDING = 1e-6  # ends of scales have been through float32
+
 LOWEST_SHARE = 1e-3
 """Smallest value that an automatic logarithmic range shows, as a share of its largest."""
 
@@ -169,7 +171,7 @@ def _log_ticks(low: float, high: float, most: int) -> NDArray[np.float64]:
     decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
     for steps in ((1, 2, 5), (1, 5), (1,)):
         ticks = np.outer(decades, steps).ravel()
-        ticks = ticks[(ticks >= low * (1 - 1e-9)) & (ticks <= high * (1 + 1e-9))]
+        ticks = ticks[(ticks >= low * (1 - _ROUNDING)) & (ticks <= high * (1 + _ROUNDING))]
         if len(ticks) <= most:
             break
     return ticks if len(ticks) >= 2 else np.array([low, high])
@@ -177,5 +179,5 @@ def _log_ticks(low: float, high: float, most: int) -> NDArray[np.float64]:
 
 def _linear_ticks(low: float, high: float, most: int) -> NDArray[np.float64]:
     step = _round_up((high - low) / most)
-    first, last = round(np.ceil(low / step - 1e-9)), round(np.floor(high / step + 1e-9))
+    first, last = round(np.ceil(low / step - _ROUNDING)), round(np.floor(high / step + _ROUNDING))
     return step * np.arange(first, last + 1)

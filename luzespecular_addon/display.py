@@ -94,6 +94,11 @@ def show(scene: bpy.types.Scene) -> None:
     apply_view(scene)
 
 
+def switch_renders(scene: bpy.types.Scene) -> None:
+    """Have renders show what the settings ask for now; viewports stay as they are."""
+    false_colour.apply(scene, current_scale(scene))
+
+
 def switch_view(scene: bpy.types.Scene) -> None:
     """Show what the settings ask for now, making the fine faces if they are asked for and still known."""
     if has_results(scene) and scene.luzespecular.display.view == "RESULTS" and not results_object.all_of(scene):
@@ -259,7 +264,7 @@ def _scale(scene: bpy.types.Scene, shown: list[Shown]) -> colours.ColourScale:
         areas = np.concatenate([mesh_arrays.polygon_areas(one.mesh) for one in shown])
         low, high = colours.automatic_range(values, areas, logarithmic)
     results.legend_low, results.legend_high = low, high
-    return colours.ColourScale(settings.scale, low, high, logarithmic)
+    return current_scale(scene)
 
 
 def _set_hidden(scene: bpy.types.Scene, object_: bpy.types.Object, hidden: bool) -> bool:

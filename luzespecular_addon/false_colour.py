@@ -11,7 +11,7 @@ import math
 import bpy
 import numpy as np
 
-from . import colours, results_object, work_planes, writeback
+from . import colours, render_legend, results_object, work_planes, writeback
 
 NAME = "LuzEspecular False Colour"
 
@@ -40,6 +40,8 @@ def apply(scene: bpy.types.Scene, scale: colours.ColourScale) -> None:
     hide_own = active and bool(shown)
     for object_ in scene.objects:
         _hide_from_camera(object_, hide_own and object_.luzespecular.hidden_for_results)
+        if object_.type == "CAMERA":
+            _focus_on_all(object_, active)
     if active:
         material = results.false_colour or _new_material(results)
         _override(scene, material)
@@ -49,7 +51,7 @@ def apply(scene: bpy.types.Scene, scale: colours.ColourScale) -> None:
 
 
 def update(scene: bpy.types.Scene, scale: colours.ColourScale) -> None:
-    """Bring the node group in step with the scale of the viewport."""
+    """Bring node group and legend in step with the viewport's."""
     material = scene.luzespecular.results.false_colour
     if material is None:
         return
@@ -63,6 +65,7 @@ def update(scene: bpy.types.Scene, scale: colours.ColourScale) -> None:
     rgb = colours.srgb_to_linear(colours.scale_colours(scale.name, np.linspace(0.0, 1.0, _STOPS)))
     for element, colour in zip(elements, rgb, strict=True):
         element.color = (*colour, 1.0)
+    render_legend.update(scene, scale, scene.luzespecular.display.legend_in_renders)
 
 
 def _meshes(scene: bpy.types.Scene):
@@ -85,6 +88,16 @@ def _hide_from_camera(object_: bpy.types.Object, hidden: bool) -> None:
     elif not hidden and settings.off_camera_for_results:
         object_.visible_camera = True
         settings.property_unset("off_camera_for_results")
+
+
+def _focus_on_all(camera: bpy.types.Object, focused: bool) -> None:
+    """Have a camera see everything sharply, the legend before it too: blurred colours would be others."""
+    settings, depth = camera.luzespecular, camera.data.dof
+    if focused and depth.use_dof:
+        depth.use_dof, settings.focused_for_results = False, True
+    elif not focused and settings.focused_for_results:
+        depth.use_dof = True
+        settings.property_unset("focused_for_results")
 
 
 def _override(scene: bpy.types.Scene, material: bpy.types.Material) -> None:
@@ -112,6 +125,7 @@ def _restore(scene: bpy.types.Scene) -> None:
     view.view_transform, view.look = results.view_transform_before, results.look_before
     view.exposure, view.gamma = results.exposure_before, results.gamma_before
     material = results.false_colour
+    render_legend.remove(scene)
     results.overrides.clear()
     for name in ("renders", "false_colour"):
         results.property_unset(name)
@@ -179,15 +193,15 @@ def _new_group() -> bpy.types.NodeTree:
     grey = _node(tree, "ShaderNodeCombineColor", "Grey", 600, 400)
     for channel in grey.inputs:
         links.new(shade, channel)
-    mix = _node(tree, "ShaderNodeMix", "Colour or Grey", 800, 0)
-    mix.data_type = "RGBA"
-    inputs = [socket for socket in mix.inputs if socket.type == "RGBA"]
-    result = next(socket for socket in mix.outputs if socket.type == "RGBA")
-    links.new(computed, mix.inputs[0])
-    links.new(grey.outputs[0], inputs[0])
-    links.new(ramp.outputs["Color"], inputs[1])
     links.new(position, ramp.inputs[0])
-    output = _node(tree, "NodeGroupOutput", "Output", 1000, 0)
+    colour = _mix(tree, "Colour or Grey", computed, grey.outputs[0], ramp.outputs["Color"], 800, 0)
+    # The legend brings colours of its own.
+    legend = _node(tree, "ShaderNodeAttribute", "Legend", 800, 400)
+    legend.attribute_name = render_legend.FLAG
+    own = _node(tree, "ShaderNodeAttribute", "Own Colour", 800, 200)
+    own.attribute_name = writeback.COLOURS
+    result = _mix(tree, "Colour or Legend", legend.outputs["Fac"], colour, own.outputs["Color"], 1000, 0)
+    output = _node(tree, "NodeGroupOutput", "Output", 1200, 0)
     links.new(result, output.inputs["Color"])
     links.new(value, output.inputs["Value"])
     links.new(computed, output.inputs["Computed"])
@@ -199,6 +213,16 @@ def _node(tree: bpy.types.NodeTree, kind: str, name: str, x: float, y: float) ->
     node.name = node.label = name
     node.location = (x, y)
     return node
+
+
+def _mix(tree: bpy.types.NodeTree, name: str, share, first, second, x: float, y: float) -> bpy.types.NodeSocket:
+    """Add a Mix node for colours; inputs are sockets."""
+    node = _node(tree, "ShaderNodeMix", name, x, y)
+    node.data_type = "RGBA"
+    inputs = [socket for socket in node.inputs if socket.type == "RGBA"]
+    for source, socket in zip((share, first, second), (node.inputs[0], *inputs), strict=True):
+        tree.links.new(source, socket)
+    return next(socket for socket in node.outputs if socket.type == "RGBA")
 
 
 def _math(tree: bpy.types.NodeTree, operation: str, first, second, x: float, y: float, third: float = 0.0):

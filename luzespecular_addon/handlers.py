@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 from bpy.app.handlers import persistent
 
-from . import display, following, live, scene_check, session
+from . import display, following, live, render_legend, scene_check, session
 
 
 @persistent
@@ -21,6 +21,7 @@ def _frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> No
     evaluated = scene.evaluated_get(depsgraph)  # in a render, keyframes reach only this copy
     following.point_sun_light(evaluated.luzespecular.site)
     live.current.frame(scene, evaluated)
+    render_legend.follow(scene, depsgraph)
 
 
 @persistent
@@ -29,6 +30,7 @@ def _scene_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> No
         light = scene.luzespecular.site.sun_object
         if any(update.is_updated_transform and update.id.original == light for update in depsgraph.updates):
             live.request(scene)
+    render_legend.follow(scene, depsgraph)
 
 
 @persistent

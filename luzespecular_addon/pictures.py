@@ -11,19 +11,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
-import numpy as np
-from mathutils import Matrix, Vector
+from mathutils import Vector
 
 from ..core.writing import complete
-from . import colours, display, legend, mesh_arrays, writeback
+from . import colours, display, render_legend, writeback
 
 SIZE = (1280, 960)
 _SAMPLES = 8
 _BACKGROUND = (0.16, 0.16, 0.16)  # sRGB
-_PAPER = (0.08, 0.08, 0.08)
-_INK = (0.95, 0.95, 0.95)
-_LEGEND_HEIGHT = 0.45  # of the picture
-_STEPS = 64
 
 
 def save(scene: bpy.types.Scene, path: Path, size: tuple[int, int] | None = None) -> Path:
@@ -72,7 +67,8 @@ def _stage(scene: bpy.types.Scene, size: tuple[int, int]) -> Iterator[bpy.types.
                 stage.collection.objects.link(copy)
             points += [object_.matrix_world @ Vector(corner) for corner in object_.bound_box]
         stage.camera = _camera(stage, scene.camera, points)
-        _add_legend(stage, scene)
+        if scene.luzespecular.display.legend_in_renders:
+            _add_legend(stage, scene, material)
         yield stage
     finally:
         for kind in _KINDS:  # scenes first: what they hold is free then
@@ -121,64 +117,14 @@ def _camera(stage: bpy.types.Scene, given: bpy.types.Object | None, points: list
     return camera
 
 
-def _add_legend(stage: bpy.types.Scene, scene: bpy.types.Scene) -> None:
-    """Stand heading and colour bar upright before the camera, nearer than all else."""
-    data, camera = stage.camera.data, stage.camera
-    frame = np.array(data.view_frame(scene=stage))
-    distance = data.clip_start * 1.002
-    if data.type != "ORTHO":
-        frame *= distance / -frame[0, 2]
-    (left, bottom), (right, top) = frame[:, :2].min(axis=0), frame[:, :2].max(axis=0)
-    location, rotation, _ = camera.matrix_world.decompose()
-    view = Matrix.LocRotScale(location, rotation, Vector((1.0, 1.0, 1.0)))
-    line, ink, paper = 0.03 * (top - bottom), _plain(_INK), _plain(_PAPER)
-
-    def put(name: str, made: bpy.types.Mesh | bpy.types.Curve, x: float, y: float, behind: float = 0.0) -> None:
-        object_ = bpy.data.objects.new(name, made)
-        object_.matrix_world = view @ Matrix.Translation((x, y, -distance - behind * data.clip_start))
-        stage.collection.objects.link(object_)
-
-    def write(text: str, x: float, y: float) -> None:
-        curve = bpy.data.curves.new("Text", "FONT")
-        curve.body, curve.size = text, line
-        curve.materials.append(ink)
-        put("Text", curve, x, y)
-
-    def lay(x: float, y: float, width: float, height: float) -> None:
-        corners = np.array([(0, 0, 0), (width, 0, 0), (width, height, 0), (0, height, 0)], np.float32)
-        mesh = mesh_arrays.new_mesh("Panel", corners, np.arange(4), np.zeros(1, int))
-        mesh.materials.append(paper)
-        put("Panel", mesh, x, y, behind=0.001)
-
+def _add_legend(stage: bpy.types.Scene, scene: bpy.types.Scene, material: bpy.types.Material) -> None:
+    """Stand the legend before the camera, nearer than all else."""
     scale = display.current_scale(scene)
-    headings = [legend.title(scene), *scene.luzespecular.results.title.split("\n")]
-    lay(left, top - 1.4 * line * len(headings) - 0.5 * line, right - left, 1.4 * line * len(headings) + 0.5 * line)
-    for row, text in enumerate(headings):
-        write(text, left + line, top - 1.4 * line * (row + 1))
-    ticks = legend.entries(scale)
-    height, x, y = _LEGEND_HEIGHT * (top - bottom), left + 1.5 * line, bottom + 1.5 * line
-    letters = max(len(text) for _, text in ticks)
-    lay(x - 0.7 * line, y - 0.8 * line, (2.6 + 0.6 * letters) * line, height + 1.6 * line)
-    bar = _bar(scale, line, height)
-    bar.materials.append(_by_attribute())
-    put("Bar", bar, x, y)
-    for position, text in ticks:
-        write(text, x + 1.4 * line, y + position * height - 0.3 * line)
-
-
-def _bar(scale: colours.ColourScale, width: float, height: float) -> bpy.types.Mesh:
-    """An upright bar of the scale's colours, (steps) quads."""
-    edges = np.linspace(0.0, height, _STEPS + 1)
-    low, high = edges[:-1], edges[1:]
-    corners = np.zeros((_STEPS, 4, 3), np.float32)
-    corners[:, 1:3, 0] = width
-    corners[:, :2, 1], corners[:, 2:, 1] = low[:, None], high[:, None]
-    flat = np.arange(4 * _STEPS)
-    mesh = mesh_arrays.new_mesh("Bar", corners.reshape(-1, 3), flat, flat[::4])
-    rgba = np.ones((_STEPS, 4))
-    rgba[:, :3] = colours.srgb_to_linear(colours.scale_colours(scale.name, (np.arange(_STEPS) + 0.5) / _STEPS))
-    mesh_arrays.write_corner_colours(mesh, writeback.COLOURS, np.repeat(rgba, 4, axis=0))
-    return mesh
+    made = render_legend.new_mesh(render_legend.Words.of(scene, scale), scale.name)
+    made.materials.append(material)
+    object_ = bpy.data.objects.new(render_legend.NAME, made)
+    stage.collection.objects.link(object_)
+    render_legend.stand(object_, stage, scene.luzespecular.display)
 
 
 def _material(name: str) -> tuple[bpy.types.Material, bpy.types.ShaderNodeTree]:
@@ -202,12 +148,4 @@ def _by_attribute() -> bpy.types.Material:
     links.new(emission.outputs[0], mix.inputs[1])
     links.new(clear.outputs[0], mix.inputs[2])
     links.new(mix.outputs[0], output.inputs["Surface"])
-    return material
-
-
-def _plain(srgb: tuple[float, float, float]) -> bpy.types.Material:
-    material, tree = _material("LuzEspecular ink")
-    emission, output = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeOutputMaterial")
-    emission.inputs["Color"].default_value = (*colours.srgb_to_linear(srgb), 1.0)
-    tree.links.new(emission.outputs[0], output.inputs["Surface"])
     return material

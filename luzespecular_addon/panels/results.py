@@ -7,7 +7,7 @@ from typing import ClassVar
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
-from .. import display, isolines
+from .. import display, isolines, render_legend
 from ..translations import CONTEXT
 from .drawing import Sidebar, draw_notices, draw_wrapped
 
@@ -85,7 +85,33 @@ class LUZESPECULAR_PT_colours(_PartOfResults, bpy.types.Panel):
         row = column.row()
         row.active = display.shows_fine(context.scene)
         row.prop(settings, "show_backs")
+
+
+class LUZESPECULAR_PT_renders(_PartOfResults, bpy.types.Panel):
+    """False colours and their legend in renders and pictures."""
+
+    bl_label = "Renders and Pictures"
+    bl_description = "False colours and their legend in renders and pictures"
+    bl_idname = "LUZESPECULAR_PT_renders"
+
+    def draw(self, context):
+        """Draw the panel."""
+        settings, camera = context.scene.luzespecular.display, context.scene.camera
+        column = _settings_column(self.layout)
         column.prop(settings, "in_renders")
+        column.prop(settings, "legend_in_renders")
+        part = column.column()
+        part.active = settings.legend_in_renders
+        part.prop(settings, "legend_corner")
+        part.prop(settings, "legend_size")
+        if settings.in_renders and settings.legend_in_renders:
+            remark = None
+            if camera is None:
+                remark = iface_("Renders need a camera: Add > Camera")
+            elif camera.type != "CAMERA" or camera.data.type not in render_legend.CAMERA_TYPES:
+                remark = iface_("The legend needs a perspective or an orthographic camera")
+            if remark:
+                draw_wrapped(self.layout.column(align=True), remark, "INFO", context.region.width)
         self.layout.operator("luzespecular.save_picture", icon="IMAGE_DATA")
 
 
@@ -183,6 +209,7 @@ CLASSES = (
     LUZESPECULAR_UL_surfaces,
     LUZESPECULAR_PT_results,
     LUZESPECULAR_PT_colours,
+    LUZESPECULAR_PT_renders,
     LUZESPECULAR_PT_lines,
     LUZESPECULAR_PT_table,
 )

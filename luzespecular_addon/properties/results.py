@@ -4,7 +4,7 @@ import bpy
 from bpy.props import CollectionProperty, FloatVectorProperty, PointerProperty
 
 from .. import display
-from ..choices import QUANTITY_ITEMS, SCALE_ITEMS, UNIT_ITEMS
+from ..choices import CORNER_ITEMS, QUANTITY_ITEMS, SCALE_ITEMS, UNIT_ITEMS
 from .kinds import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 
@@ -17,7 +17,7 @@ def _switch_view(settings: "LuzDisplaySettings", _context: bpy.types.Context) ->
 
 
 def _switch_renders(settings: "LuzDisplaySettings", _context: bpy.types.Context) -> None:
-    display.show(settings.id_data)
+    display.switch_renders(settings.id_data)
 
 
 class LuzDisplaySettings(bpy.types.PropertyGroup):
@@ -114,11 +114,35 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
     in_renders: BoolProperty(
         name="In Renders",
         description=(
-            "Have EEVEE and Cycles render the false colours: materials are overridden and tone mapping is off meanwhile"
+            "Have EEVEE and Cycles render the false colours: materials are overridden, tone mapping and the depth of "
+            "field of cameras are off meanwhile"
         ),
         update=_switch_renders,
     )
     show_legend: BoolProperty(name="Legend", description="Draw the legend in the 3D viewport", default=True)
+    legend_in_renders: BoolProperty(
+        name="Legend",
+        description="Have the legend in renders of the false colours and in saved pictures",
+        default=True,
+        update=_switch_renders,
+    )
+    legend_corner: EnumProperty(
+        name="Corner",
+        description="Corner of the picture that the legend stands in",
+        items=CORNER_ITEMS,
+        default="BOTTOM_LEFT",
+        update=_switch_renders,
+    )
+    legend_size: FloatProperty(
+        name="Legend Size (%)",
+        description="Height of the legend, as a share of the picture's",
+        min=10.0,
+        max=95.0,
+        default=45.0,
+        precision=0,
+        step=500,
+        update=_switch_renders,
+    )
 
 
 class LuzSurfaceRow(bpy.types.PropertyGroup):

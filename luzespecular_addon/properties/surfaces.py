@@ -34,9 +34,11 @@ class LuzObjectSettings(bpy.types.PropertyGroup):
     )
     is_results: BoolProperty(options={"HIDDEN"})
     results_side: StringProperty(options={"HIDDEN"})
+    state: StringProperty(options={"HIDDEN"})
     hidden_for_results: BoolProperty(options={"HIDDEN"})
     in_renders_for_results: BoolProperty(options={"HIDDEN"})
     off_camera_for_results: BoolProperty(options={"HIDDEN"})
+    focused_for_results: BoolProperty(options={"HIDDEN"})
     plane: PointerProperty(type=LuzWorkPlane)
 
 

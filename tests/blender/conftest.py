@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -36,6 +37,7 @@ ROOMS = (
     "places",
     "pins",
     "probe",
+    "render_legend",
     "results_object",
     "scene_check",
     "session",
@@ -174,3 +176,23 @@ class Maker:
         settings.accuracy.fineness, settings.accuracy.bands = "EXPERT", bands
         settings.accuracy.max_area = max_area
         return settings
+
+    def look_down(self, width, height):
+        """An orthographic camera 5 m above (1, 1), and pictures without any smoothing."""
+        scene = self._bpy.context.scene
+        scene.camera = self.object("Camera", self._bpy.data.cameras.new("Camera"))
+        scene.camera.data.type, scene.camera.data.ortho_scale, scene.camera.location = "ORTHO", 2.0, (1.0, 1.0, 5.0)
+        scene.render.engine, scene.cycles.samples, scene.cycles.device = "CYCLES", 1, "CPU"
+        scene.cycles.use_denoising = False
+        scene.render.resolution_x, scene.render.resolution_y = width, height
+        scene.render.image_settings.file_format, scene.render.filter_size = "PNG", 0.01
+
+    def rendered(self, folder):
+        """Render the scene: (height, width, 3), sRGB, lowest row first."""
+        render = self._bpy.context.scene.render
+        render.filepath = str(folder / "rendered.png")
+        self._bpy.ops.render.render(write_still=True)
+        image = self._bpy.data.images.load(render.filepath)
+        pixels = np.array(image.pixels[:]).reshape(render.resolution_y, render.resolution_x, 4)[..., :3]
+        self._bpy.data.images.remove(image)
+        return pixels

@@ -132,6 +132,14 @@ def test_darkness_has_a_range_too(colours, values, logarithmic):
     assert not logarithmic or low > 0
 
 
+@pytest.mark.parametrize("logarithmic", [False, True])
+def test_ends_that_blender_has_stored_keep_their_ticks(colours, logarithmic):
+    low, high = (float(np.float32(end)) for end in (0.05, 0.7))
+    ticks = colours.ColourScale("VIRIDIS", low, high, logarithmic).ticks()
+    assert ticks[0] == pytest.approx(0.05 if logarithmic else 0.1)
+    assert ticks[-1] == pytest.approx(0.5 if logarithmic else 0.7)
+
+
 @given(low=st.floats(1e-2, 1e4), ratio=st.floats(1.01, 1e5), logarithmic=st.booleans())
 def test_ticks_are_few_round_and_inside(colours, low, ratio, logarithmic):
     scale = colours.ColourScale("GREY", low if logarithmic else 0.0, low * ratio, logarithmic)

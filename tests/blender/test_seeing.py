@@ -33,7 +33,7 @@ def shown(addon, object_):
 def data_blocks(bpy):
     return {
         kind: sorted(block.name for block in getattr(bpy.data, kind))
-        for kind in ("objects", "meshes", "materials", "node_groups", "collections")
+        for kind in ("objects", "meshes", "curves", "fonts", "materials", "node_groups", "collections")
     }
 
 
@@ -282,22 +282,11 @@ def test_the_node_group_has_the_colours_of_the_legend(addon, bpy, solved):
         np.testing.assert_allclose(nodes["Scale"].color_ramp.evaluate(position)[:3], expected, atol=5e-3)
 
 
-def test_cycles_renders_the_colours_of_the_viewport(addon, bpy, solved, tmp_path):
+def test_cycles_renders_the_colours_of_the_viewport(addon, bpy, make, solved, tmp_path):
     scene = bpy.context.scene
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 2.0, (1.0, 1.0, 5.0)
-    scene.render.engine, scene.cycles.samples, scene.cycles.device = "CYCLES", 1, "CPU"
-    scene.cycles.use_denoising = False
-    scene.render.resolution_x = scene.render.resolution_y = 16
-    scene.render.image_settings.file_format, scene.render.filter_size = "PNG", 0.01
-    scene.render.filepath = str(tmp_path / "false colour.png")
-    solved.display.in_renders = True
-    bpy.ops.render.render(write_still=True)
-    image = bpy.data.images.load(scene.render.filepath)
-    pixels = np.array(image.pixels[:]).reshape(16, 16, 4)[..., :3]
-    bpy.data.images.remove(image)
+    make.look_down(16, 16)
+    solved.display.legend_in_renders, solved.display.in_renders = False, True
+    pixels = make.rendered(tmp_path)
     # The far quarter of the floor is under the open sky, and so are its colours.
     part = fine(addon, bpy)
     scale = addon.display.current_scale(scene)
@@ -320,6 +309,8 @@ def test_clear_takes_all_ways_of_seeing_away(addon, bpy, make):
     make.square("Canopy", height=0.5)
     settings = make.quick(max_area=0.1)
     assert bpy.ops.luzespecular.add_work_plane() == {"FINISHED"}
+    scene.camera = make.object("Camera", bpy.data.cameras.new("Camera"))
+    scene.camera.data.dof.use_dof = True
     before = data_blocks(bpy), render_state(scene), sorted(a.name for a in floor.data.attributes)
     plane_before = sorted(a.name for a in bpy.context.object.data.attributes)
     assert bpy.ops.luzespecular.solve() == {"FINISHED"}
@@ -330,7 +321,10 @@ def test_clear_takes_all_ways_of_seeing_away(addon, bpy, make):
     origin = addon.probe.Vector((1.5, 1.5, 3.0))
     hit = addon.probe.pick(addon.probe.targets(bpy.context), origin, addon.probe.Vector((0, 0, -1)), True)
     addon.probe.pin(scene, hit)
+    assert addon.render_legend.find(scene) is not None
+    assert not scene.camera.data.dof.use_dof
     assert bpy.ops.luzespecular.clear_results() == {"FINISHED"}
+    assert scene.camera.data.dof.use_dof
     assert (data_blocks(bpy), render_state(scene), sorted(a.name for a in floor.data.attributes)) == before
     plane = addon.work_planes.all_of(scene)[0]
     assert sorted(a.name for a in plane.data.attributes) == plane_before

@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import bpy
+from mathutils import Vector
 
 ROOM = Path(__file__).resolve().parents[2] / "examples" / "light_shelf" / "light_shelf.blend"
 
@@ -26,6 +27,8 @@ def steps(window):
     scene.luzespecular.site.hour = 10.0
     yield 4.0
     window.shot("blender")
+    _render(scene, window.folder / "render.png")
+    yield 1.0
 
     # The sidebar from its top and to its end, with all panels open, and the panel of materials: in each language.
     yield from _click(window, "north_offset", below=115)  # opens Sun Light
@@ -57,6 +60,19 @@ def steps(window):
             _crop(whole, window, window.region(region, area), window.folder / f"{name}{ending}.png")
             whole.unlink()
         yield from window.scroll(down=False)
+
+
+def _render(scene, path):
+    """Render the false colours with their legend by the scene's own engine, smooth, seen from outside."""
+    display, render = scene.luzespecular.display, scene.render
+    scene.camera.location, scene.camera.data.lens = (5.5, 8.5, 4.2), 45.0
+    way = Vector((1.5, 1.4, 1.3)) - scene.camera.location
+    scene.camera.rotation_euler = way.to_track_quat("-Z", "Y").to_euler()
+    scene.camera.data.clip_start, scene.camera.data.shift_y = 0.1, 0.0
+    display.shading, display.in_renders = "SMOOTH", True
+    render.resolution_x, render.resolution_y, render.filepath = 960, 600, str(path)
+    bpy.ops.render.render(write_still=True)
+    display.shading, display.in_renders = "FACES", False
 
 
 def _click(window, name, below):

@@ -141,9 +141,31 @@ TEXTS = {
         "'{word}' não é uma iluminância: informe números como 100, 200, 300"
     ),
     "In Renders": "Nas renderizações",
-    "Have EEVEE and Cycles render the false colours: materials are overridden and tone mapping is off meanwhile": (
-        "EEVEE e Cycles renderizam as cores falsas: enquanto isso os materiais são substituídos "
-        "e o mapeamento de tons fica desligado"
+    "Have EEVEE and Cycles render the false colours: materials are overridden, tone mapping and the depth of field of "
+    "cameras are off meanwhile": (
+        "EEVEE e Cycles renderizam as cores falsas: enquanto isso os materiais são substituídos, e o mapeamento de "
+        "tons e a profundidade de campo das câmeras ficam desligados"
+    ),
+    "Renders and Pictures": "Renderizações e imagens",
+    "False colours and their legend in renders and pictures": "Cores falsas e sua legenda em renderizações e imagens",
+    "Have the legend in renders of the false colours and in saved pictures": (
+        "Incluir a legenda nas renderizações das cores falsas e nas imagens salvas"
+    ),
+    "Corner": "Canto",
+    "Corner of the picture that the legend stands in": "Canto da imagem em que fica a legenda",
+    "Bottom Left": "Embaixo à esquerda",
+    "In the lower left corner of the picture": "No canto inferior esquerdo da imagem",
+    "Bottom Right": "Embaixo à direita",
+    "In the lower right corner of the picture": "No canto inferior direito da imagem",
+    "Top Left": "Em cima à esquerda",
+    "In the upper left corner of the picture": "No canto superior esquerdo da imagem",
+    "Top Right": "Em cima à direita",
+    "In the upper right corner of the picture": "No canto superior direito da imagem",
+    "Legend Size (%)": "Tamanho da legenda (%)",
+    "Height of the legend, as a share of the picture's": "Altura da legenda, como parcela da altura da imagem",
+    "Renders need a camera: Add > Camera": "Renderizações precisam de uma câmera: Adicionar > Câmera",
+    "The legend needs a perspective or an orthographic camera": (
+        "A legenda precisa de uma câmera em perspectiva ou ortográfica"
     ),
     "Solve again for the fine faces": "Calcule de novo para ter as faces finas",
 }
