@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
+from .blockers import Blockers, Shapes, above, between, has_area, light_past, within_cones
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
@@ -49,25 +50,6 @@ class Source:
 
 
 @dataclass(frozen=True, eq=False)
-class Screen:
-    """Something in the way, in the receivers' mirrored space.
-
-    Attributes
-    ----------
-    polygon : (w, 3) float
-        What of the outline lies in between.
-    outline : int
-    """
-
-    polygon: np.ndarray
-    outline: int
-
-    def reflected(self, normal, offset: float) -> Screen:
-        """Its image in a mirror."""
-        return Screen(reflect_points(self.polygon, normal, offset), self.outline)
-
-
-@dataclass(frozen=True, eq=False)
 class Mirrored:
     """A mirror on the way: its material, and its normal in the receivers' mirrored space."""
 
@@ -78,6 +60,11 @@ class Mirrored:
         """(n,) float: specular reflectance for light along directions ``(n, 3)`` of any length."""
         length = np.maximum(np.linalg.norm(directions, axis=1), 1e-300)
         return self.material.specular_at((directions @ self.normal) / length)
+
+    @property
+    def varies(self) -> bool:
+        """Whether its reflectance changes with the angle."""
+        return self.material.refractive_index is not None
 
 
 def gather_sources(
@@ -119,7 +106,7 @@ def gather_sources(
     points = np.asarray(points, float)
     unseen = outlines.unseen_backs(points, horizon.normal)
     view = _SourceView(outlines, unseen, _coplanar(sources, outlines), mirrors, limits, least, checkpoint)
-    return view.illuminance(_Leg(points, horizon, None, None, (), (), 1.0, None, 0))
+    return view.illuminance(_Leg(points, horizon, None, None, (), Blockers.none(), 1.0, None, 0))
 
 
 def even_illuminance(outlines: Outlines, sources: list[Source]) -> float:
@@ -203,7 +190,7 @@ class _Leg:
     opening : (r,) float or None
         Form factor to the window.
     mirrors : tuple of Mirrored
-    screens : tuple of Screen
+    blockers : Blockers
         What lies on the way so far.
     throughput : float
         Largest product of the reflectances so far.
@@ -218,7 +205,7 @@ class _Leg:
     window: np.ndarray | None
     opening: np.ndarray | None
     mirrors: tuple[Mirrored, ...]
-    screens: tuple[Screen, ...]
+    blockers: Blockers
     throughput: float
     beyond: HalfSpace | None
     depth: int
@@ -251,9 +238,10 @@ class _Leg:
         if not len(rows):
             return rows, which, np.zeros((0, 1, 3))
         shape = shapes[which] - self.points[rows][:, None]
-        if self.window is not None:
-            shape = within_cones(shape, self.window[rows])
-        some = _has_area(shape)
+        if self.window is None:
+            return rows, which, shape
+        shape = within_cones(shape, self.window[rows])
+        some = has_area(shape)
         return rows[some], which[some], shape[some]
 
 
@@ -288,7 +276,7 @@ class _SourceView:
         return (1 + self.limits.exact_mirrors) * sum(planes) if mixed else max(planes)
 
     def illuminance(self, leg: _Leg) -> np.ndarray:
-        """(r,) float: light that comes past the leg's screens, and by any further mirror [lx]."""
+        """(r,) float: light that comes past the leg's blockers, and by any further mirror [lx]."""
         total = np.zeros(len(leg.points))
         for group in self.groups:
             self.checkpoint()
@@ -313,16 +301,16 @@ class _SourceView:
         row, which, shape = leg.seen(rows[row], which, visible)
         if not len(row):
             return
-        rows, place = np.unique(row, return_inverse=True)
-        target = visible[np.unique(which)].reshape(-1, 3)
-        between = _between(outlines, self.unseen_backs, leg.points[rows], target, [plane, *leg.limits])
-        screens = [*leg.screens, *(Screen(polygon, o) for o, polygon in between)]
-        total[rows] += _light_past(
+        (rows, place), (used, which_used) = (np.unique(n, return_inverse=True) for n in (row, which))
+        points, shapes = leg.points[rows], visible[used]
+        blockers = leg.blockers.joined(between(outlines, self.unseen_backs, points, shapes, [plane, *leg.limits]))
+        total[rows] += light_past(
             outlines,
-            _Shapes(place.reshape(-1), shape, group.exitance[which]),
-            leg.points[rows],
+            blockers,
+            Shapes(place.reshape(-1), shape, group.exitance[which]),
+            (shapes, which_used.reshape(-1)),
+            points,
             leg.horizon.normal,
-            screens,
             leg.mirrors,
         )
 
@@ -333,7 +321,7 @@ class _SourceView:
         outline = outlines.vertices[mirror]
         if throughput < self.limits.cutoff:
             return
-        if leg.beyond is not None and not _above(outline[None], leg.beyond, tolerance)[0]:
+        if leg.beyond is not None and not above(outline[None], leg.beyond, tolerance)[0]:
             return  # the mirror just used, or one in its plane
         aperture = leg.clipped(outline[None])
         if polygons.areas(aperture)[0] <= tolerance**2:
@@ -343,7 +331,7 @@ class _SourceView:
         for side in (1.0, -1.0) if both else (1.0,):
             ahead = HalfSpace(side * normal, side * offset)
             rows = np.flatnonzero(leg.points @ ahead.normal - ahead.offset > tolerance)
-            if not len(rows) or not any(_above(g.polygons, ahead, tolerance).any() for g in self.groups):
+            if not len(rows) or not any(above(g.polygons, ahead, tolerance).any() for g in self.groups):
                 continue
             rows, _, window = leg.seen(rows, np.zeros(len(rows), np.int64), aperture)
             opening = np.abs(polygons.lambert_form_factor(window, leg.horizon.normal))
@@ -351,10 +339,7 @@ class _SourceView:
             if not bright.any():
                 continue
             rows, window, opening = rows[bright], window[bright], opening[bright]
-            between = _between(
-                outlines, self.unseen_backs, leg.points[rows], aperture[0], [ahead, *leg.limits], skip=mirror
-            )
-            screens = [*leg.screens, *(Screen(polygon, o) for o, polygon in between)]
+            there = between(outlines, self.unseen_backs, leg.points[rows], aperture, [ahead, *leg.limits], skip=mirror)
             passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in leg.mirrors]
             total[rows] += self.illuminance(
                 _Leg(
@@ -363,158 +348,9 @@ class _SourceView:
                     reflect(window, normal),
                     opening,
                     (*passed, Mirrored(material, normal)),
-                    tuple(s.reflected(normal, offset) for s in screens),
+                    leg.blockers.joined(there).reflected(normal, offset),
                     throughput,
                     ahead,
                     leg.depth + 1,
                 )
             )
-
-
-def within_cones(shapes, windows) -> np.ndarray:
-    """Part of each polygon that is seen through a convex window, both relative to the eye.
-
-    Parameters
-    ----------
-    shapes : (r, v, 3) float, padded
-    windows : (r, w, 3) float, padded
-
-    Returns
-    -------
-    (r, u, 3) float, padded
-    """
-    planes, _, facing = _edge_cones(windows)
-    for edge in range(planes.shape[1]):
-        shapes = polygons.clip(shapes, planes[:, edge])
-    return np.where((facing != 0)[:, None, None], shapes, shapes[:, :1])
-
-
-def _edge_cones(windows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Planes through the eye and a window's edges, positive inside; which are edges; from which side it is seen."""
-    planes = polygons.cross(windows, np.roll(windows, -1, axis=1))
-    facing = np.einsum("rc,rc->r", polygons.newell_normal(windows), windows[:, 0])
-    planes *= np.sign(facing)[:, None, None]
-    length = np.linalg.norm(planes, axis=2)
-    edges = length > 1e-14 * np.linalg.norm(windows, axis=2).max(axis=1)[:, None] ** 2
-    planes = np.where(edges[:, :, None], planes / np.where(edges, length, 1.0)[:, :, None], 0.0)
-    return planes, edges, facing
-
-
-def _above(vertices, half: HalfSpace, tolerance: float) -> np.ndarray:
-    return (vertices @ half.normal - half.offset > tolerance).any(axis=1)
-
-
-def _between(outlines: Outlines, unseen_backs, points, target, half_spaces: list[HalfSpace], skip: int = -1):
-    """Outlines, cut to the half-spaces, whose plane separates some receiver from some of the target."""
-    tolerance = outlines.tolerance
-    mask = np.ones(len(outlines.vertices), bool)
-    for half in half_spaces:
-        mask &= _above(outlines.vertices, half, tolerance)
-    if skip >= 0:
-        mask[skip] = False
-    index = np.flatnonzero(mask)
-    low, high = points.min(axis=0), points.max(axis=0)
-    pick = np.indices((2, 2, 2)).reshape(3, -1).T.astype(bool)
-    corners = np.where(pick, high, low) if len(points) > 8 else points
-    normals, offsets = outlines.normals[index], outlines.offsets[index]
-    near = corners @ normals.T - offsets
-    far = target @ normals.T - offsets
-    apart = ((near.max(axis=0) > tolerance) & (far.min(axis=0) < -tolerance)) | (
-        (near.min(axis=0) < -tolerance) & (far.max(axis=0) > tolerance)
-    )
-    apart &= ~unseen_backs[index] | (near.max(axis=0) > tolerance)  # who is behind a solid's side is behind others
-    kept = index[apart]
-    parts = outlines.vertices[kept]
-    for half in half_spaces:
-        parts = polygons.clip(parts, half.normal, half.offset)
-    wide = polygons.areas(parts) > tolerance**2
-    return list(zip(kept[wide].tolist(), parts[wide], strict=True))
-
-
-@dataclass(frozen=True, eq=False)
-class _Shapes:
-    """What is left of bright polygons.
-
-    Attributes
-    ----------
-    row : (n,) int
-        Receiver of each.
-    shape : (n, v, 3) float, padded
-        Relative to it.
-    weight : (n,) float
-        Exitance times what panes let through [lm/m²].
-    """
-
-    row: np.ndarray
-    shape: np.ndarray
-    weight: np.ndarray
-
-    def take(self, index) -> _Shapes:
-        """Some of the polygons."""
-        return _Shapes(self.row[index], self.shape[index], self.weight[index])
-
-    @classmethod
-    def joined(cls, parts: list[_Shapes]) -> _Shapes:
-        """All polygons in one."""
-        parts = [p for p in parts if len(p.row)] or parts[:1]
-        return cls(
-            np.concatenate([p.row for p in parts]),
-            polygons.joined([p.shape for p in parts]),
-            np.concatenate([p.weight for p in parts]),
-        )
-
-
-def _light_past(outlines: Outlines, shapes: _Shapes, points, normal, screens: list[Screen], mirrors) -> np.ndarray:
-    """(r,) float: illuminance by what is seen of polygons past screens, as mirrors reflect it [lx]."""
-    for screen in screens:
-        planes, edges, facing = _edge_cones(screen.polygon[None] - points[:, None])
-        height = np.matmul(shapes.shape, planes.transpose(0, 2, 1)[shapes.row])
-        reach = np.abs(shapes.shape).max(axis=(1, 2))
-        overlaps = ((height.max(axis=1) > 1e-12 * reach[:, None]) | ~edges[shapes.row]).all(axis=1)
-        overlaps &= facing[shapes.row] != 0
-        if overlaps.any():
-            behind = _past_screen(outlines, screen, shapes.take(overlaps), planes, edges)
-            shapes = _Shapes.joined([shapes.take(~overlaps), *behind])
-        if not len(shapes.row):
-            return np.zeros(len(points))
-    centre = shapes.shape.mean(axis=1)
-    weight = shapes.weight
-    for mirror in mirrors:
-        weight = weight * mirror.share(centre)
-    factor = np.maximum(polygons.lambert_form_factor(shapes.shape, normal), 0.0)
-    return np.bincount(shapes.row, weights=weight * factor, minlength=len(points))
-
-
-def _past_screen(outlines: Outlines, screen: Screen, shapes: _Shapes, planes, edges) -> list[_Shapes]:
-    """Polygons less a screen's cone; behind a pane they are kept, dimmed."""
-    kept = []
-    material = outlines.materials[screen.outline]
-    for e in range(planes.shape[1]):
-        if not len(shapes.row):
-            break
-        wall, edge = planes[shapes.row, e], edges[shapes.row, e]
-        outside = _Shapes(shapes.row, polygons.clip(shapes.shape, -wall), shapes.weight)
-        kept.append(outside.take(edge & _has_area(outside.shape)))
-        inside = polygons.clip(shapes.shape, wall)
-        inside = inside if edge.all() else _choose(edge, inside, shapes.shape)
-        shapes = _Shapes(shapes.row, inside, shapes.weight).take(_has_area(inside))
-    if material.is_transparent:
-        plane = polygons.newell_normal(screen.polygon)
-        centre = shapes.shape.mean(axis=1)
-        length = np.linalg.norm(centre, axis=1) * np.linalg.norm(plane)
-        through = material.transmittance_at((centre @ plane) / np.maximum(length, 1e-300))
-        kept.append(_Shapes(shapes.row, shapes.shape, shapes.weight * through))
-    return kept
-
-
-def _choose(which, one, other):
-    width = max(one.shape[1], other.shape[1])
-    return np.where(which[:, None, None], polygons.widen(one, width), polygons.widen(other, width))
-
-
-def _has_area(shapes) -> np.ndarray:
-    """Whether clipped polygons, relative to their receivers, still span a solid angle."""
-    if not len(shapes):
-        return np.zeros(0, bool)
-    twice = np.linalg.norm(polygons.newell_normal(shapes), axis=1)
-    return twice > 1e-20 * np.maximum(np.abs(shapes).max(axis=(1, 2)), 1e-300) ** 2
