@@ -1,15 +1,19 @@
-"""What Blender's side adds to a solution: seconds to read 100,000 faces and to write their results back.
+"""What Blender's side adds to a solution, and how quick it answers the hand.
 
     python benchmarks/blender_side.py [--faces 25000,50000,100000] [--repeats 5]
 
-A plane of quads in hills, as it is and with a modifier, shown as fine faces and on the own mesh, smooth and with
-iso-lux lines. The solver is left out: what it would return is made up, with one value per triangle. Times are medians
-of wall time, and of processor time where other work disturbs the clock.
+First seconds to read 100,000 faces and to write their results back: a plane of quads in hills, as it is and with a
+modifier, shown as fine faces and on the own mesh, smooth and with iso-lux lines. The solver is left out: what it would
+return is made up, with one value per triangle. Then a step of the hour that is dragged, in the light-shelf room of
+some 10,800 faces, solver and all; and how long the main thread waits for its turn beside a solver's thread. Times are
+medians of wall time, and of processor time where other work disturbs the clock. `tests/gui/steps_reaction.py` measures
+the same in a real window.
 """
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import importlib
 import statistics
 import sys
@@ -22,7 +26,9 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
 import blender_session
 
-ROOMS = ("display", "study")
+ROOMS = ("display", "job", "live", "session", "study")
+ROOM = Path(__file__).resolve().parents[1] / "examples" / "light_shelf" / "light_shelf.blend"
+_NAP, _CALLS = 0.002, 2_000  # what the main thread does between waits: sleep, and as many calls as drawing a panel
 CASES = {
     "as it is, fine faces": {},
     "with a modifier, fine faces": {"modified": True},
@@ -117,8 +123,84 @@ def once(rooms, faces: int, case: dict) -> dict[str, tuple[float, float]]:
     return times
 
 
+def drag(rooms, repeats: int) -> dict[str, list[tuple[float, float]]]:
+    """Drag the hour in the light-shelf room; return seconds of wall and processor time of each part of each step."""
+    scene = open_room()
+    settings = scene.luzespecular
+    times: dict[str, list[tuple[float, float]]] = {}
+
+    def timed(part: str, function):
+        clock = Clock()
+        found = function()
+        times.setdefault(part, []).append(clock.read())
+        return found
+
+    import bpy
+
+    with bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
+        bpy.ops.luzespecular.solve()
+        solved = rooms.study.collect(bpy.context)
+        for step in range(4 * repeats):
+            settings.site.hour = 9.0 + 3.0 * step / (4 * repeats)
+            whole = Clock()
+            relit = timed("light from the settings", lambda: rooms.study.relit(solved, scene))
+            quick = dataclasses.replace(relit, solving={"tolerance": 0.02, "quick": True})
+            running = rooms.job.Job(quick, rooms.session.current)
+            running.start()
+            timed("solution in its thread", running.wait)
+            timed("is the scene the same?", lambda: rooms.study.is_current(bpy.context, solved))
+            timed(
+                "written and coloured",
+                lambda quick=quick, job=running: rooms.study.show(scene, quick, job.result, None),
+            )
+            times.setdefault("the whole step", []).append(whole.read())
+    return times
+
+
+def waits(rooms) -> dict[str, list[float]]:
+    """Return by how much the main thread's naps and small work last longer beside a solver's thread, in seconds."""
+    scene = open_room()
+    import bpy
+
+    found: dict[str, list[float]] = {}
+    with bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
+        planned = rooms.study.collect(bpy.context)
+        found["alone"] = [_turn() for _ in range(500)]
+        for name, solving in (("beside prepare and solve", {}), ("beside quick solutions", {"quick": True})):
+            lasted = found.setdefault(name, [])
+            for _ in range(20 if solving else 1):
+                running = rooms.job.Job(dataclasses.replace(planned, solving=solving), rooms.session.current)
+                running.start()
+                while not running.finished:
+                    lasted.append(_turn())
+                if running.error is not None:
+                    raise running.error
+    usual = statistics.median(found["alone"])
+    return {name: [one - usual for one in lasted] for name, lasted in found.items()}
+
+
+def _turn() -> float:
+    start = time.perf_counter()
+    time.sleep(_NAP)
+    for _ in range(_CALLS):
+        len("a call")
+    return time.perf_counter() - start
+
+
+def open_room():
+    """Open the light-shelf room with its mirror shelf, at normal fineness; return its scene."""
+    import bpy
+
+    bpy.ops.wm.open_mainfile(filepath=str(ROOM))
+    blender_session.enable()
+    scene = bpy.data.scenes["S1 mirror shelf"]
+    for window in bpy.context.window_manager.windows:
+        window.scene = scene
+    return scene
+
+
 def main() -> int:
-    """Print the table."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--faces", default="25000,50000,100000")
     parser.add_argument("--repeats", type=int, default=5)
@@ -144,6 +226,16 @@ def main() -> int:
                     for step in ("export", "write-back", "both", "another hour")
                 ]
                 print(f"| {name} | {faces:,} | " + " | ".join(cells) + " |", flush=True)
+        dragged, waited = drag(rooms, arguments.repeats), waits(rooms)
+        print("\n| a step of the hour, light-shelf room | seconds, median | longest |\n|---|---|---|")
+        for part, seconds in dragged.items():
+            walls, works = zip(*seconds, strict=True)
+            cells = [f"{f(walls):.4f} ({f(works):.4f})" for f in (statistics.median, max)]
+            print(f"| {part} | " + " | ".join(cells) + " |", flush=True)
+        print("\n| the main thread waits, seconds | median | 95 of 100 | longest | number |\n|---|---|---|---|---|")
+        for name, lasted in waited.items():
+            cells = [f"{value:.4f}" for value in np.percentile(lasted, [50, 95, 100])]
+            print(f"| {name} | " + " | ".join(cells) + f" | {len(lasted)} |", flush=True)
     return 0
 
 

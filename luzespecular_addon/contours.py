@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from mathutils import Vector
 from numpy.typing import NDArray
 
-from . import colours, isolines, mesh_arrays
+from . import colours, isolines, mesh_arrays, smoothing
 
 if TYPE_CHECKING:
     from .display import Shown
@@ -52,14 +53,16 @@ def update(scene: bpy.types.Scene, shown: Iterable[Shown], scale: colours.Colour
     if not scene.luzespecular.display.show_lines:
         remove(scene)
         return
-    parts = [_triangles(one) for one in shown if _carries_lines(scene, one.object_)]
-    parts.append((np.zeros((0, 3, 3)), np.zeros((0, 3))))
+    chosen = levels(scene, scale)
+    carriers = [one for one in shown if _carries_lines(scene, one.object_)]
+    parts = [(np.zeros((0, 3, 3)), np.zeros((0, 3))), *(_triangles(one, chosen) for one in carriers)]
     points, values = (np.concatenate(part) for part in zip(*parts, strict=True))
-    lines = isolines.trace(points, values, levels(scene, scale))
+    lines = isolines.trace(points, values, chosen)
     crossed = points[lines.triangles]
     normals = np.cross(crossed[:, 1] - crossed[:, 0], crossed[:, 2] - crossed[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    extent = float(np.ptp(points.reshape(-1, 3), axis=0).max()) if len(points) else 0.0
+    corners = [one.object_.matrix_world @ Vector(corner) for one in carriers for corner in one.object_.bound_box]
+    extent = smoothing.extent(np.array(corners).reshape(-1, 3))
     ends = lines.ends + _LIFT * extent * normals[:, None]
     labels = isolines.label_edges(lines, _LABELS_APART * extent)
     object_ = find(scene) or _new(scene)
@@ -100,13 +103,16 @@ def _new(scene: bpy.types.Scene) -> bpy.types.Object:
     return object_
 
 
-def _triangles(one: Shown) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return triangles in world space, (t, 3, 3), and the values at their corners, (t, 3)."""
+def _triangles(one: Shown, levels_: list[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return triangles that levels run through, in world space, (t, 3, 3), and the values at their corners, (t, 3)."""
     mesh = one.mesh
     corners = mesh_arrays.triangle_corners(mesh)
+    values = one.corner_values[corners]
+    rows = isolines.crossed(values, levels_)
+    corners, values = corners[rows], values[rows]
     matrix = np.array(one.object_.matrix_world)
-    places = mesh_arrays.vertex_positions(mesh).astype(float) @ matrix[:3, :3].T + matrix[:3, 3]
-    triangles = places[mesh_arrays.corner_vertices(mesh)][corners]
+    places = mesh_arrays.vertex_positions(mesh)[mesh_arrays.corner_vertices(mesh)[corners]]
+    triangles = places.astype(float) @ matrix[:3, :3].T + matrix[:3, 3]
     if np.linalg.det(matrix[:3, :3]) < 0.0:
-        corners, triangles = corners[:, ::-1], triangles[:, ::-1]
-    return triangles, one.corner_values[corners]
+        triangles, values = triangles[:, ::-1], values[:, ::-1]
+    return triangles, values

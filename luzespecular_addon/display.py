@@ -55,7 +55,7 @@ class Shown:
         if self.object_.luzespecular.is_results:  # triangles apart: those that touch are found by where they stand
             groups = np.repeat(mesh_arrays.read_face_values(mesh, results_object.SURFACE, np.int32), 3)
             points = mesh_arrays.vertex_positions(mesh)
-            tolerance = 1e-5 * float(np.ptp(points, axis=0).max(initial=0.0)) or 1.0
+            tolerance = 1e-5 * smoothing.extent(points) or 1.0
             vertices = smoothing.weld(points, groups, tolerance)
         return smoothing.corner_means(
             self.values,

@@ -28,6 +28,19 @@ class IsoLines:
     triangles: NDArray[np.intp]
 
 
+def crossed(values: ArrayLike, levels: Iterable[float]) -> NDArray[np.bool_]:
+    """Return which triangles, (t,) bool, any of the levels runs through, by the values at their corners, (t, 3)."""
+    lowest, highest = _ends(np.asarray(values, float))
+    levels = np.unique(np.fromiter(levels, float))
+    return np.searchsorted(levels, lowest, "right") < np.searchsorted(levels, highest, "right")
+
+
+def _ends(values: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Lowest and highest value of each triangle; NaN goes through, and is no level's neighbour."""
+    a, b, c = values.T  # column by column: many times as fast as along the short axis
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+
+
 def trace(points: ArrayLike, values: ArrayLike, levels: Iterable[float]) -> IsoLines:
     """Return the lines along which values that vary linearly over triangles have the given levels.
 
@@ -41,9 +54,7 @@ def trace(points: ArrayLike, values: ArrayLike, levels: Iterable[float]) -> IsoL
         Values to follow.
     """
     points, values = np.asarray(points, float), np.asarray(values, float)
-    # Column by column: many times as fast as along the short axis. NaN goes through, and is no level's neighbour.
-    lowest = np.minimum(np.minimum(values[:, 0], values[:, 1]), values[:, 2])
-    highest = np.maximum(np.maximum(values[:, 0], values[:, 1]), values[:, 2])
+    lowest, highest = _ends(values)
     found = []
     for level in map(float, levels):
         rows = np.flatnonzero((lowest < level) & (highest >= level))

@@ -62,6 +62,8 @@ def _is_closed(mesh: bpy.types.Mesh) -> bool:
 
 def corner_counts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Return the number of corners of each polygon, (p,) int32."""
+    if len(mesh.loops) == 3 * len(mesh.polygons):  # no polygon has less
+        return np.full(len(mesh.polygons), 3, np.int32)
     starts = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_start", starts)
     return np.diff(starts, append=np.int32(len(mesh.loops)))

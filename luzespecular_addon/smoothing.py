@@ -47,14 +47,17 @@ def corner_means(
     means = np.repeat(values, corners)
     if not known.any():
         return means
-    face, vertex = face[known], vertices[known]
-    means[known] = _flat_means(values, areas, face, vertex)
+    means[known] = _flat_means(values, areas, face[known], vertices[known])
     rough = known.copy()
-    rough[known] = _rough(normals, areas, face, vertex)
+    rough[known] = _rough(normals, areas, face[known], vertices[known])
     if rough.any():
-        face = np.repeat(np.arange(len(values)), corners)[rough]
-        means[rough] = _pairwise_means(values, areas, normals, face, vertices[rough])
+        means[rough] = _pairwise_means(values, areas, normals, face[rough], vertices[rough])
     return means
+
+
+def extent(points: NDArray) -> float:
+    """Return the longest side of the upright box around points, (c, 3); 0 without any."""
+    return max((float(np.ptp(column)) for column in points.T if len(column)), default=0.0)  # faster than all at once
 
 
 def weld(points: ArrayLike, groups: ArrayLike, tolerance: float) -> NDArray[np.int64]:

@@ -92,6 +92,18 @@ def test_lines_run_where_the_values_are(addon_arrays, seed, level):
         assert (ends <= triangles[row].max(axis=0) + 1e-9).all()
 
 
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10_000), count=st.integers(0, 5))
+def test_triangles_without_lines_are_known_before(addon_arrays, seed, count):
+    random = np.random.default_rng(seed)
+    values = random.integers(0, 6, (40, 3)).astype(float)  # levels that corners have exactly, too
+    values[::7, 1] = np.nan
+    levels = random.integers(0, 6, count).tolist()
+    lines = addon_arrays.isolines.trace(np.zeros((40, 3, 3)), values, levels)
+    known = addon_arrays.isolines.crossed(values, levels)
+    assert np.flatnonzero(known).tolist() == sorted(set(lines.triangles.tolist()))
+
+
 def test_no_lines_where_nothing_was_computed_or_wanted(addon):
     triangles = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], float)
     assert len(addon.isolines.trace(triangles, [[0.0, np.nan, 9.0]], [5.0]).ends) == 0
