@@ -17,7 +17,7 @@ from .nodes import Nodes, settled
 from .parallel import chunks_of_receivers, run_parallel
 from .penumbra import trace_disc
 from .result import Result
-from .sources import Source, gather_sources
+from .sources import Bright, Source, SourceView
 from .stages import Progress, Recorder
 from .sunlight import NO_SUNLIGHT, Sunlight, trace_sun
 from .transfer import Transfer
@@ -293,20 +293,27 @@ def _gather_bright(
     geometry = transfer.geometry
     found = np.zeros(0)
     done = 0.0
+    bright = Bright(geometry.outlines, sources, transfer.limits)
+    views: dict[int, SourceView] = {}
+
+    def view(sheet: int) -> SourceView:
+        if sheet not in views:
+            mine = np.flatnonzero(geometry.fracture.element_sheet == sheet)
+            corners = geometry.fracture.elements[mine].reshape(-1, 3)
+            views[sheet] = bright.seen_from(corners, geometry.element_normals[mine[0]])
+        return views[sheet]
 
     def evaluate(nodes: Nodes, first: int) -> np.ndarray:
         nonlocal found, done
         found = np.concatenate([found, np.zeros(len(nodes.points) - first)])
         members = np.arange(first, len(nodes.points))
         begun, share = done, 0.6 * (1.0 - done)
-        chunks = chunks_of_receivers(nodes.points[members], nodes.sheet[members], geometry.planes, _SOURCE_ROWS)
+        sheets = nodes.sheet[members]
+        chunks = chunks_of_receivers(nodes.points[members], sheets, geometry.planes, _SOURCE_ROWS)
 
         def work(chunk, checkpoint):
             rows = members[chunk]
-            normal = geometry.element_normals[nodes.element[rows[0]]]
-            found[rows] = gather_sources(
-                geometry.outlines, sources, nodes.points[rows], normal, transfer.limits, checkpoint
-            )
+            found[rows] = view(int(sheets[chunk[0]])).illuminance(nodes.points[rows], checkpoint)
 
         def report(part: float) -> None:
             progress(begun + share * part, "interreflection")

@@ -8,17 +8,18 @@ mirrored scene, inside the mirror's outline.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from . import polygons
-from .blockers import Blockers, Shapes, above, between, has_area, light_past, within_cones
+from .blockers import Blockers, Shapes, above, between, frame, has_area, light_past, within_cones
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
 from .specular import ChainLimits
+from .unhidden import whole_form_factors
 
 _FAINT = 1e-4
 """Of the illuminance that the sources' flux would be, spread over all surfaces: what gives less is not looked for."""
@@ -99,20 +100,65 @@ def gather_sources(
     """
     if not sources or not len(points):
         return np.zeros(len(points))
-    horizon = HalfSpace(np.asarray(normal, float), float(np.asarray(normal) @ points[0]))
-    # one in the receivers' own plane too: it comes into view by way of others
-    mirrors = [o for o, material in enumerate(outlines.materials) if material.is_specular]
-    least = faint * even_illuminance(outlines, sources)
     points = np.asarray(points, float)
-    unseen = outlines.unseen_backs(points, horizon.normal)
-    view = _SourceView(outlines, unseen, _coplanar(sources, outlines), mirrors, limits, least, checkpoint)
-    return view.illuminance(_Leg(points, horizon, None, None, (), Blockers.none(), 1.0, None, 0))
+    return Bright(outlines, sources, limits, faint).seen_from(points, normal).illuminance(points, checkpoint)
 
 
 def even_illuminance(outlines: Outlines, sources: list[Source]) -> float:
     """What the sources' flux would be, spread over all surfaces [lx]."""
     flux = sum(source.exitance * float(polygons.areas(source.polygon)) for source in sources)
     return flux / max(float(polygons.areas(outlines.vertices).sum()), 1e-300)
+
+
+@dataclass(frozen=True, eq=False)
+class Bright:
+    """Sources made ready for receivers anywhere.
+
+    Attributes
+    ----------
+    outlines : Outlines
+    sources : list of Source
+        At least one.
+    limits : ChainLimits
+    faint : float
+        See `gather_sources`.
+    """
+
+    outlines: Outlines
+    sources: list[Source]
+    limits: ChainLimits
+    faint: float = _FAINT
+
+    @cached_property
+    def groups(self) -> list[_Coplanar]:
+        """Sources of one plane together."""
+        return _coplanar(self.sources, self.outlines)
+
+    @cached_property
+    def least(self) -> float:
+        """What gives no more is not looked for in mirrors [lx]."""
+        return self.faint * even_illuminance(self.outlines, self.sources)
+
+    @cached_property
+    def mirrors(self) -> list[int]:
+        """Outlines that mirror: one in the receivers' own plane too, since it comes into view by way of others."""
+        return [o for o, material in enumerate(self.outlines.materials) if material.is_specular]
+
+    @cached_property
+    def brightest(self) -> float:
+        """No less than the exitance that is seen along any one direction, all mirrors on the way together."""
+        planes = [group.brightest for group in self.groups]
+        mixed = any(
+            (m.is_specular or m.is_transparent) and (m.diffuse_reflectance > 0 or m.exitance > 0)
+            for m in self.outlines.materials
+        )
+        return (1 + self.limits.exact_mirrors) * sum(planes) if mixed else max(planes)
+
+    def seen_from(self, points, normal) -> SourceView:
+        """As receivers of one plane see them that lie between some points ``(n, 3)`` of it."""
+        normal = np.asarray(normal, float)
+        horizon = HalfSpace(normal, float(normal @ points[0]))
+        return SourceView(self, _Path(self, frame(points, normal), horizon, None, (), Blockers.none(), 1.0, 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,38 +223,37 @@ def _coplanar(sources: list[Source], outlines: Outlines) -> list[_Coplanar]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Leg:
-    """Where receivers look from: themselves, or their image after some mirrors.
+class _Path:
+    """A way on which all receivers of a plane look: straight on, or by some mirrors.
 
     Attributes
     ----------
-    points : (r, 3) float
+    bright : Bright
+    corners : (c, 3) float
+        Between which the receivers lie, or their images.
     horizon : HalfSpace
-        Above their own plane, mirrored likewise.
-    window : (r, v, 3) float or None
-        What each receiver sees of the last mirror through all before it, relative to the receiver.
-    opening : (r,) float or None
-        Form factor to the window.
+        Above the receivers' own plane, mirrored likewise.
+    beyond : HalfSpace or None
+        Behind the last mirror, where they look.
     mirrors : tuple of Mirrored
     blockers : Blockers
         What lies on the way so far.
     throughput : float
         Largest product of the reflectances so far.
-    beyond : HalfSpace or None
-        Behind the last mirror, where they look.
     depth : int
         Mirrors so far.
     """
 
-    points: np.ndarray
+    bright: Bright
+    corners: np.ndarray
     horizon: HalfSpace
-    window: np.ndarray | None
-    opening: np.ndarray | None
+    beyond: HalfSpace | None
     mirrors: tuple[Mirrored, ...]
     blockers: Blockers
     throughput: float
-    beyond: HalfSpace | None
     depth: int
+    _sources: dict[int, tuple] = field(default_factory=dict)
+    _mirrored: dict[tuple[int, float], _Path] = field(default_factory=dict)
 
     @property
     def limits(self) -> list[HalfSpace]:
@@ -221,136 +266,156 @@ class _Leg:
             shapes = polygons.clip(shapes, half.normal, half.offset)
         return shapes
 
-    def seen(self, rows, which, shapes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def sources(self, number: int) -> tuple[np.ndarray, np.ndarray, Blockers]:
+        """Of a group: which of its sources may be seen (s,), what of them (s, u, 3), and what may stand before them."""
+        found = self._sources.get(number)
+        if found is None:
+            group, outlines = self.bright.groups[number], self.bright.outlines
+            visible = self.clipped(group.polygons)
+            which = np.flatnonzero(polygons.areas(visible) > outlines.tolerance**2)
+            visible, blockers = visible[which], self.blockers
+            if len(which):
+                blockers = blockers.joined(between(outlines, self.corners, visible, [group.plane, *self.limits]))
+            found = self._sources[number] = which, visible, blockers
+        return found
+
+    def aperture(self, mirror: int) -> np.ndarray | None:
+        """(1, u, 3) float: what of a mirror may be seen; None where nothing of it."""
+        outlines = self.bright.outlines
+        outline = outlines.vertices[mirror][None]
+        if self.beyond is not None and not above(outline, self.beyond, outlines.tolerance)[0]:
+            return None  # the mirror just used, or one in its plane
+        seen = self.clipped(outline)
+        return seen if polygons.areas(seen)[0] > outlines.tolerance**2 else None
+
+    def mirrored(self, mirror: int, ahead: HalfSpace, aperture, throughput: float) -> _Path:
+        """The way on by one more mirror."""
+        key = mirror, float(ahead.normal @ self.bright.outlines.normals[mirror])
+        found = self._mirrored.get(key)
+        if found is None:
+            outlines = self.bright.outlines
+            normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
+            there = between(outlines, self.corners, aperture, [ahead, *self.limits], skip=mirror)
+            passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in self.mirrors]
+            found = self._mirrored[key] = _Path(
+                self.bright,
+                reflect_points(self.corners, normal, offset),
+                self.horizon.reflected(normal, offset),
+                ahead,
+                (*passed, Mirrored(outlines.materials[mirror], normal)),
+                self.blockers.joined(there).reflected(normal, offset),
+                throughput,
+                self.depth + 1,
+            )
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Leg:
+    """Where receivers look from on a path: themselves, or their image after some mirrors.
+
+    Attributes
+    ----------
+    points : (r, 3) float
+    window : (r, v, 3) float or None
+        What each receiver sees of the last mirror through all before it, relative to the receiver.
+    opening : (r,) float or None
+        Form factor to the window.
+    """
+
+    points: np.ndarray
+    window: np.ndarray | None = None
+    opening: np.ndarray | None = None
+
+    def seen(self, row, which, shapes, weight) -> Shapes:
         """Of pairs of a row and one of some polygons, those where it is seen through the window.
 
         Parameters
         ----------
-        rows, which : (n,) int
+        row, which : (n,) int
         shapes : (s, v, 3) float
-
-        Returns
-        -------
-        rows, which : (m,) int
-        seen : (m, u, 3) float
-            Relative to the receivers.
+        weight : (n,) float
         """
-        if not len(rows):
-            return rows, which, np.zeros((0, 1, 3))
-        shape = shapes[which] - self.points[rows][:, None]
-        if self.window is None:
-            return rows, which, shape
-        shape = within_cones(shape, self.window[rows])
-        some = has_area(shape)
-        return rows[some], which[some], shape[some]
+        if self.window is None or not len(row):
+            shape = shapes.transpose(2, 1, 0).take(which, axis=2) - self.points.T.take(row, axis=1)[:, None]
+            return Shapes(row, which, shape, weight)
+        shape = within_cones(shapes[which] - self.points[row][:, None], self.window[row])
+        some = np.flatnonzero(has_area(shape))
+        return Shapes(row[some], which[some], np.ascontiguousarray(shape[some].transpose(2, 1, 0)), weight[some])
 
 
 @dataclass(frozen=True, eq=False)
-class _SourceView:
-    """Sources as receivers of one plane see them, straight and in mirrors.
+class SourceView:
+    """Sources as receivers of one plane see them, straight and in mirrors: what is found once for all of these.
 
     Attributes
     ----------
-    unseen_backs : (o,) bool
-        Outlines that nobody need look for who is behind them.
-    least : float
-        What gives no more is not looked for [lx].
+    bright : Bright
+    straight : _Path
     """
 
-    outlines: Outlines
-    unseen_backs: np.ndarray
-    groups: list[_Coplanar]
-    mirrors: list[int]
-    limits: ChainLimits
-    least: float
-    checkpoint: Callable[[], None]
+    bright: Bright
+    straight: _Path
 
-    @cached_property
-    def brightest(self) -> float:
-        """No less than the exitance that is seen along any one direction, all mirrors on the way together."""
-        planes = [group.brightest for group in self.groups]
-        mixed = any(
-            (m.is_specular or m.is_transparent) and (m.diffuse_reflectance > 0 or m.exitance > 0)
-            for m in self.outlines.materials
-        )
-        return (1 + self.limits.exact_mirrors) * sum(planes) if mixed else max(planes)
+    def illuminance(self, points, checkpoint: Callable[[], None] = lambda: None) -> np.ndarray:
+        """(r,) float: light at some of the receivers [lx]."""
+        unseen = self.bright.outlines.unseen_backs(points, self.straight.horizon.normal)
+        return self._gathered(self.straight, _Leg(points), unseen, checkpoint)
 
-    def illuminance(self, leg: _Leg) -> np.ndarray:
-        """(r,) float: light that comes past the leg's blockers, and by any further mirror [lx]."""
+    def _gathered(self, path: _Path, leg: _Leg, unseen, checkpoint) -> np.ndarray:
+        """(r,) float: light that comes past the path's blockers, and by any further mirror [lx]."""
         total = np.zeros(len(leg.points))
-        for group in self.groups:
-            self.checkpoint()
-            self._add_sources(leg, group, total)
-        if leg.depth < self.limits.exact_mirrors:
-            for mirror in self.mirrors:
-                self._add_mirrored(leg, mirror, total)
+        for number in range(len(self.bright.groups)):
+            checkpoint()
+            self._add_sources(path, leg, number, unseen, total)
+        if path.depth < self.bright.limits.exact_mirrors:
+            for mirror in self.bright.mirrors:
+                self._add_mirrored(path, leg, mirror, unseen, checkpoint, total)
         return total
 
-    def _add_sources(self, leg: _Leg, group: _Coplanar, total: np.ndarray) -> None:
-        outlines, tolerance, plane = self.outlines, self.outlines.tolerance, group.plane
-        height = leg.points @ plane.normal - plane.offset
-        rows = np.flatnonzero(height > tolerance)
-        bright = np.ones((len(rows), len(group.exitance)), bool)
-        if leg.opening is not None:
-            bright = leg.throughput * group.most(leg.points[rows], height[rows]) > self.least
-            bright &= leg.throughput * leg.opening[rows, None] * group.exitance > self.least
-        if not bright.any():
+    def _add_sources(self, path: _Path, leg: _Leg, number: int, unseen, total: np.ndarray) -> None:
+        outlines, least, group = self.bright.outlines, self.bright.least, self.bright.groups[number]
+        height = leg.points @ group.plane.normal - group.plane.offset
+        rows = np.flatnonzero(height > outlines.tolerance)
+        if not len(rows):
             return
-        visible = leg.clipped(group.polygons)
-        row, which = np.nonzero(bright & (polygons.areas(visible) > tolerance**2))
-        row, which, shape = leg.seen(rows[row], which, visible)
+        some, visible, blockers = path.sources(number)
+        if leg.opening is None:
+            which, row = np.divmod(np.arange(len(some) * len(rows)), len(rows))
+        else:
+            bright = path.throughput * group.most(leg.points[rows], height[rows])[:, some] > least
+            bright &= path.throughput * leg.opening[rows, None] * group.exitance[some] > least
+            which, row = np.nonzero(bright.T)
         if not len(row):
             return
-        (rows, place), (used, which_used) = (np.unique(n, return_inverse=True) for n in (row, which))
-        points, shapes = leg.points[rows], visible[used]
-        blockers = leg.blockers.joined(between(outlines, self.unseen_backs, points, shapes, [plane, *leg.limits]))
-        total[rows] += light_past(
-            outlines,
-            blockers,
-            Shapes(place.reshape(-1), shape, group.exitance[which]),
-            (shapes, which_used.reshape(-1)),
-            points,
-            leg.horizon.normal,
-            leg.mirrors,
-        )
-
-    def _add_mirrored(self, leg: _Leg, mirror: int, total: np.ndarray) -> None:
-        outlines, tolerance = self.outlines, self.outlines.tolerance
-        material = outlines.materials[mirror]
-        throughput = leg.throughput * float(material.specular_at(np.linspace(0.05, 1.0, 8)).max())
-        outline = outlines.vertices[mirror]
-        if throughput < self.limits.cutoff:
+        seen = leg.seen(rows[row], which, visible, group.exitance[some[which]])
+        if not len(seen.row):
             return
-        if leg.beyond is not None and not above(outline[None], leg.beyond, tolerance)[0]:
-            return  # the mirror just used, or one in its plane
-        aperture = leg.clipped(outline[None])
-        if polygons.areas(aperture)[0] <= tolerance**2:
+        total += light_past(outlines, blockers, unseen, seen, visible, leg.points, path.horizon.normal, path.mirrors)
+
+    def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, checkpoint, total: np.ndarray) -> None:
+        outlines, tolerance = self.bright.outlines, self.bright.outlines.tolerance
+        material = outlines.materials[mirror]
+        throughput = path.throughput * float(material.specular_at(np.linspace(0.05, 1.0, 8)).max())
+        aperture = None if throughput < self.bright.limits.cutoff else path.aperture(mirror)
+        if aperture is None:
             return
         normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
         both = outlines.two_sided[mirror] or material.reflects_both_sides
         for side in (1.0, -1.0) if both else (1.0,):
             ahead = HalfSpace(side * normal, side * offset)
             rows = np.flatnonzero(leg.points @ ahead.normal - ahead.offset > tolerance)
-            if not len(rows) or not any(above(g.polygons, ahead, tolerance).any() for g in self.groups):
+            if not len(rows) or not any(above(g.polygons, ahead, tolerance).any() for g in self.bright.groups):
                 continue
-            rows, _, window = leg.seen(rows, np.zeros(len(rows), np.int64), aperture)
-            opening = np.abs(polygons.lambert_form_factor(window, leg.horizon.normal))
-            bright = throughput * self.brightest * opening > self.least
-            if not bright.any():
+            seen = leg.seen(rows, np.zeros(len(rows), np.int64), aperture, np.ones(len(rows)))
+            opening = np.abs(whole_form_factors(seen.shape, path.horizon.normal))
+            bright = np.flatnonzero(throughput * self.bright.brightest * opening > self.bright.least)
+            if not len(bright):
                 continue
-            rows, window, opening = rows[bright], window[bright], opening[bright]
-            there = between(outlines, self.unseen_backs, leg.points[rows], aperture, [ahead, *leg.limits], skip=mirror)
-            passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in leg.mirrors]
-            total[rows] += self.illuminance(
-                _Leg(
-                    reflect_points(leg.points[rows], normal, offset),
-                    leg.horizon.reflected(normal, offset),
-                    reflect(window, normal),
-                    opening,
-                    (*passed, Mirrored(material, normal)),
-                    leg.blockers.joined(there).reflected(normal, offset),
-                    throughput,
-                    ahead,
-                    leg.depth + 1,
-                )
+            seen = seen.take(bright)
+            window = seen.shape.transpose(2, 1, 0)
+            further = _Leg(
+                reflect_points(leg.points[seen.row], normal, offset), reflect(window, normal), opening[bright]
             )
+            way = path.mirrored(mirror, ahead, aperture, throughput)
+            total[seen.row] += self._gathered(way, further, unseen, checkpoint)

@@ -146,7 +146,7 @@ def test_no_memory_while_solving_leaves_the_transfer_whole(monkeypatch):
     def exhausted(*args, **options):
         raise MemoryError("Unable to allocate 9 TiB")
 
-    for name in ("gather_patches", "gather_sources", "follow_sun"):
+    for name in ("gather_patches", "Bright", "follow_sun"):
         with monkeypatch.context() as patch:
             patch.setattr(sys.modules["luzespecular.solve"], name, exhausted)
             with pytest.raises(MemoryError, match="Unable to allocate"):
