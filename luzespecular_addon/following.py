@@ -11,7 +11,7 @@ from .notices import BadInput
 def settings_changed(scene: bpy.types.Scene) -> None:
     """Bring all that depends on site, time and sky in step with a scene's settings."""
     point_sun_light(scene.luzespecular.site)
-    live.request(scene)
+    live.request(scene, at_once=True)
 
 
 def point_sun_light(site: bpy.types.PropertyGroup) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import queue
 import threading
 import time
@@ -22,11 +23,14 @@ class Task:
         What the function returned; None until then.
     error : Exception or None
         Why there is no result.
+    lasted : float
+        Seconds that the function took; infinite until it has ended.
     """
 
     def __init__(self, work: Callable[[], object]):
         self.result: object = None
         self.error: Exception | None = None
+        self.lasted = math.inf
         self._work = work
         self._cancelled = threading.Event()
         self._thread = threading.Thread(target=self._run, name="LuzEspecular", daemon=True)
@@ -51,9 +55,9 @@ class Task:
         """Whether there is a result or an error, or nobody waits for them."""
         return self._cancelled.is_set() or not self._thread.is_alive()
 
-    def wait(self) -> None:
-        """Block until it has stopped."""
-        self._thread.join()
+    def wait(self, timeout: float | None = None) -> None:
+        """Block until it has stopped, or some seconds are over."""
+        self._thread.join(timeout)
 
     def latest(self, timeout: float = 0.0) -> tuple[float, str] | None:
         """Return the last progress told since the last look, waiting up to `timeout` seconds; None without news."""
@@ -64,6 +68,7 @@ class Task:
             self.result = self._work()
         except Exception as error:  # noqa: BLE001 - handed over to the main thread, which tells the user
             self.error = error
+        self.lasted = self.elapsed
 
 
 class Job(Task):

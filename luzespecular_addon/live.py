@@ -26,7 +26,8 @@ _log = logging.getLogger(__name__)
 _TICK = 0.01  # seconds between looks at a job on its way
 _REST = 0.4  # seconds without a change, and since a quick result is seen, after which it is settled
 _AT_ONCE = 0.15  # a solution that took no longer may hold up playback
-_CHEAP = 0.01  # a look at the scene that took no longer is taken again before results are shown
+_CHEAP = 0.01  # a look at the scene that took no longer is taken again for each frame that is played
+_MOMENT = 0.08  # a solution that took no longer is waited for while a setting changes: nothing is drawn twice then
 _QUICK_TOLERANCE = 0.02
 
 
@@ -86,6 +87,16 @@ class Live:
         """Note that the settings changed."""
         self._wanted, self._moved_at = True, time.monotonic()
 
+    def begin_at_once(self) -> None:
+        """Begin what is wanted, where nothing is on its way; if it can be expected in a moment, bring it to its end.
+
+        Called while the user's hand changes a setting, before all is drawn with it.
+        """
+        if self._job is None and self.advance() and self._job is not None and self._seconds < _MOMENT:
+            self._job.wait(_MOMENT)
+            if self._job.finished:
+                self.advance()
+
     def advance(self) -> bool:
         """Do the next thing that is to be done; tell whether there is more to come."""
         scene = self.scene
@@ -97,7 +108,8 @@ class Live:
                 if self._wanted and not self._quick:
                     self._job.cancel()  # the hand moves again: to settle has time
                 return True
-            self._conclude(scene)
+            # While one drags, a look now and then has to do: hidden objects are shown for it, and all is drawn anew.
+            self._conclude(scene, looks=not self._quick or self._is_due)
             if self._study is None:
                 return False
         try:
@@ -126,7 +138,7 @@ class Live:
         self.stop()
         self._start(planned, quick=not whole)
         self._job.wait()
-        self._conclude(scene)
+        self._conclude(scene, looks=not (self.rendering or self._is_dear))  # while rendering one cannot look
         if self._quick:
             request(scene)
 
@@ -139,9 +151,8 @@ class Live:
             self._wanted = self._quick = False
             _tell(iface_("Leave Edit Mode first (Tab)"))
             return False
-        if (settle or now - self._verified_at > 2.0 * _REST) and not self._verify():
+        if (settle or self._is_due) and not self._verify():
             return False
-        self._verified_at = now  # the scene hardly changes while one drags
         planned = study.relit(self._study, scene)
         wanted, self._wanted = self._wanted, False
         if settle or (wanted and planned.daylight != self._study.daylight):
@@ -150,19 +161,26 @@ class Live:
         _tell("")
         return self._quick
 
+    @property
+    def _is_due(self) -> bool:
+        """Whether it is time to look again if the scene stands as it did."""
+        return time.monotonic() - self._verified_at > 2.0 * _REST
+
+    @property
+    def _is_dear(self) -> bool:
+        """Whether a look at the scene would take longer than frames that are played have time for."""
+        return self._verifying > _CHEAP and self._seconds < _AT_ONCE
+
     def _verify(self) -> bool:
         begun = time.monotonic()
         current_still = study.is_current(bpy.context, self._study)
-        self._verifying = time.monotonic() - begun
+        self._verified_at = time.monotonic()
+        self._verifying = self._verified_at - begun
         if current_still:
             return True
         self.disarm()
         _tell(iface_("The scene changed since it was solved: solve again"))
         return False
-
-    def _trusts(self, seconds: float) -> bool:
-        """Whether a scene is taken to stand as it did some seconds ago; in a render it cannot be looked at."""
-        return self.rendering or (self._verifying > _CHEAP and seconds < _AT_ONCE)
 
     def _start(self, planned: study.Study, quick: bool) -> None:
         solved = planned
@@ -173,7 +191,7 @@ class Live:
         self._job = Job(solved, session.current)
         self._job.start()
 
-    def _conclude(self, scene: bpy.types.Scene) -> None:
+    def _conclude(self, scene: bpy.types.Scene, looks: bool) -> None:
         job, self._job = self._job, None
         if isinstance(job.error, luz.Cancelled):
             self._quick = True  # what is shown has still to be settled
@@ -183,8 +201,8 @@ class Live:
         elif job.error is not None:
             self.disarm()
             raise job.error
-        elif self._trusts(job.elapsed) or self._verify():
-            self._seconds = job.elapsed
+        elif not looks or self._verify():
+            self._seconds = job.lasted
             self._study = replace(job.study, solving=self._study.solving)
             study.show(scene, job.study, job.result, None if self._quick else job.readings)
             self._moved_at = time.monotonic()  # who drags by what is seen needs a moment
@@ -195,13 +213,18 @@ current = Live()
 """What this Blender follows; let go of when another file is loaded."""
 
 
-def request(scene: bpy.types.Scene) -> None:
-    """Ask for results that fit a scene's settings as they are now; nothing happens where they are not live."""
+def request(scene: bpy.types.Scene, at_once: bool = False) -> None:
+    """Ask for results that fit a scene's settings as they are now; nothing happens where they are not live.
+
+    With ``at_once`` they are begun here and now, not at the timer's next turn.
+    """
     if bpy.app.background or not current.follows(scene):
         return
     current.want()
     if not bpy.app.timers.is_registered(_tick):
-        bpy.app.timers.register(_tick, first_interval=0.0)
+        bpy.app.timers.register(_tick, first_interval=_TICK)
+    if at_once and not bpy.context.window_manager.luzespecular.running:
+        current.begin_at_once()
 
 
 def _tick() -> float | None:

@@ -183,6 +183,50 @@ def test_a_hand_that_moves_again_need_not_wait_until_all_is_settled(addon, bpy, 
     assert means(courtyard) == pytest.approx(solved_anew(bpy, courtyard), rel=1e-4)
 
 
+def test_what_takes_a_moment_is_shown_before_all_is_drawn(addon, bpy, courtyard, dragging):
+    live, site = addon.live.current, bpy.context.scene.luzespecular.site
+    dragging.drag(hour=11.0)
+    live._seconds = 0.0
+    for hour, title in ((10.0, "10:00"), (10.5, "10:30")):
+        site.hour = hour
+        live.want()
+        live._seconds = 0.0
+        live.begin_at_once()
+        if live._job is not None:  # a machine at work on other things
+            live._job.wait()
+            live.advance()
+        assert title in courtyard.results.title
+    live._seconds = 60.0
+    site.hour = 9.5
+    live.want()
+    live.begin_at_once()
+    assert "10:30" in courtyard.results.title  # to be shown by the timer, however soon it is done
+    assert live._job is not None
+    running = live._job
+    live.begin_at_once()
+    assert live._job is running  # one at a time
+    running.wait()
+    live.advance()
+    assert "09:30" in courtyard.results.title
+
+
+def test_while_dragging_the_scene_is_looked_at_now_and_then(addon, bpy, courtyard, dragging, monkeypatch):
+    looks = []
+    is_current = addon.study.is_current
+    monkeypatch.setattr(addon.study, "is_current", lambda *args: looks.append(1) or is_current(*args))
+    dragging.pass_time(10.0)
+    dragging.drag(hour=9.5)  # 0.05 s each
+    assert len(looks) == 1
+    for step in range(10):
+        dragging.drag(hour=10.0 + 0.1 * step)
+    assert len(looks) == 1
+    for step in range(10):
+        dragging.drag(hour=11.0 + 0.1 * step)
+    assert len(looks) == 2
+    dragging.rest()
+    assert len(looks) > 3  # what stays is looked at before and after
+
+
 def test_a_changed_scene_stops_it_and_says_so(addon, bpy, courtyard, dragging):
     title = courtyard.results.title
     bpy.data.objects["Wall"].location.x = 0.5
