@@ -8,7 +8,7 @@ tells, which is an affine function of the receiver's place: for all of them one 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -24,7 +24,7 @@ _VOLUMES = 1_000_000
 """That are held at once."""
 
 _FEW = 4_000
-"""Blockers times shapes times receivers: fewer are told one by one at once."""
+"""Pairs of a blocker and a shape, times receivers: fewer are told one by one at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,117 +79,147 @@ class Blockers:
         height = self.normals @ points.T
         height -= self.offsets[:, None]
         height[np.abs(height) <= tolerance] = 0.0
-        unseen = unseen_backs[self.outline]
+        unseen = np.zeros(0, bool) if unseen_backs is None else unseen_backs[self.outline]
         if unseen.any():  # who is behind a solid's side is behind others
             height[unseen] = np.maximum(height[unseen], 0.0)
         return height
 
-    def before(self, points, shapes, facing) -> tuple[np.ndarray, np.ndarray]:
-        """What stands before convex shapes, as each point sees them.
+
+@dataclass(frozen=True, eq=False)
+class Overlaps:
+    """Pairs of an outer and an inner convex polygon, and how they may overlap as points see them.
+
+    Attributes
+    ----------
+    outer, inner : (q,) int
+        Numbers of the polygons; sorted by the inner one's.
+    forms : (q, w, v, 4) float
+        Of a point's place: height of inner corners within outer edges, over the extent of all, as seen from before the
+        outer polygon.
+    back : (q, v, w, 4) float
+        Of outer corners within inner edges, as seen from before the inner polygon.
+    free : (q, w) bool
+    loose : (q, v) bool
+        Which are no edges, of outer and of inner polygons.
+    centre : (3,) float
+        That places are relative to.
+    """
+
+    outer: np.ndarray
+    inner: np.ndarray
+    forms: np.ndarray
+    back: np.ndarray
+    free: np.ndarray
+    loose: np.ndarray
+    centre: np.ndarray
+
+    @classmethod
+    def of(cls, outer, inner, corners) -> Overlaps:
+        """Of polygons ``(k, w, 3)`` and ``(s, v, 3)``, as seen from between ``corners`` (c, 3)."""
+        centre = corners.mean(axis=0)
+        outer, inner, eye = outer - centre, inner - centre, corners - centre
+        extent = max(float(np.abs(part).max(initial=1e-300)) for part in (outer, inner, eye))
+        low = np.minimum(inner.min(axis=1), eye.min(axis=0)) - _SLIVER * extent
+        high = np.maximum(inner.max(axis=1), eye.max(axis=0)) + _SLIVER * extent
+        apart = (outer.min(axis=1) > high[:, None]) | (outer.max(axis=1) < low[:, None])
+        number, which = np.nonzero(~apart.any(axis=2))
+        forms, sides = _forms(outer[which], inner[number], extent)
+        back, along = _forms(inner[number], outer[which], extent)
+        return cls(which, number, forms, back, sides <= 1e-12 * extent, along <= 1e-12 * extent, centre)
+
+    def take(self, index) -> Overlaps:
+        """Some of the pairs."""
+        return Overlaps(
+            self.outer[index],
+            self.inner[index],
+            self.forms[index],
+            self.back[index],
+            self.free[index],
+            self.loose[index],
+            self.centre,
+        )
+
+    def near(self, corners, facing) -> np.ndarray:
+        """(q,) bool: pairs that may overlap as seen from anywhere between ``corners`` (c, 3).
+
+        ``facing`` (k, any) tells whether points are before or behind the outer polygons, or in their planes.
+        """
+        eye = self._places(corners)
+        before, behind = (facing > 0).any(axis=1)[self.outer], (facing < 0).any(axis=1)[self.outer]
+        heights = (self.forms.reshape(-1, 4) @ eye).reshape(*self.free.shape, -1)
+        may = ((heights.max(axis=2) > _SLIVER) | self.free).all(axis=1) & before
+        may |= ((heights.min(axis=2) < -_SLIVER) | self.free).all(axis=1) & behind
+        reach = (self.back.reshape(-1, 4) @ eye).reshape(*self.loose.shape, -1).max(axis=2)
+        return may & ((reach > _SLIVER) | self.loose).all(axis=1)
+
+    def seen(self, points, facing) -> tuple[np.ndarray, np.ndarray]:
+        """How each pair overlaps.
 
         Parameters
         ----------
         points : (r, 3) float
-        shapes : (s, v, 3) float
-            Facing the points.
+            Before the inner polygons.
         facing : (k, r) float
-            See `facing`.
+            Positive where a point is before an outer polygon, negative behind; 0 in its plane.
 
         Returns
         -------
-        hides : (k, s, r) bool
-            The whole shape.
-        crosses : (k, s, r) bool
-            A part of it.
+        within : (q, r) bool
+            The inner polygon lies wholly within the outer one.
+        crossing : (q, r) bool
+            A part of it does.
         """
-        k, s, r = len(self), len(shapes), len(points)
-        hides, crosses = np.zeros((2, k, s, r), bool)
-        step = max(1, _VOLUMES // max(1, self.vertices.shape[1] * shapes.shape[0] * shapes.shape[1] * r))
-        for first in range(0, k, step):
+        eye = self._places(points)
+        within, crossing = np.zeros((2, len(self.outer), len(points)), bool)
+        edges, corners = self.forms.shape[1:3]
+        step = max(1, _VOLUMES // max(1, edges * corners * len(points)))
+        for first in range(0, len(self.outer), step):
             some = slice(first, first + step)
-            volumes = _Volumes.of(self.vertices[some], shapes, points)
-            before, behind = facing[some, None] > 0, facing[some, None] < 0
-            may, within = np.zeros((2, *volumes.high.shape[:1], s, r), bool)
+            heights = (self.forms[some].reshape(-1, 4) @ eye).reshape(-1, edges, corners, len(points))
+            low, high, free = heights.min(axis=2), heights.max(axis=2), self.free[some, :, None]
+            here = facing[self.outer[some]]
+            before, behind = here > 0, here < 0
             if before.any():
-                may |= before & ((volumes.high > _SLIVER) | volumes.free).all(axis=1)
-                within |= before & ((volumes.low > -_SLIVER) | volumes.free).all(axis=1)
+                crossing[some] = before & ((high > _SLIVER) | free).all(axis=1)
+                within[some] = before & ((low > -_SLIVER) | free).all(axis=1)
             if behind.any():
-                may |= behind & ((volumes.low < -_SLIVER) | volumes.free).all(axis=1)
-                within |= behind & ((volumes.high < _SLIVER) | volumes.free).all(axis=1)
-            may &= ((volumes.reach > _SLIVER) | volumes.open).all(axis=1).transpose(1, 0, 2)
-            hides[some] = within
-            crosses[some] = may & ~within
-        return hides, crosses
+                crossing[some] |= behind & ((low < -_SLIVER) | free).all(axis=1)
+                within[some] |= behind & ((high < _SLIVER) | free).all(axis=1)
+            left = first + np.flatnonzero(crossing[some].any(axis=1))
+            reach = (self.back[left].reshape(-1, 4) @ eye).reshape(-1, corners, edges, len(points)).max(axis=2)
+            crossing[left] &= ((reach > _SLIVER) | self.loose[left, :, None]).all(axis=1)
+        within &= crossing
+        crossing &= ~within
+        return within, crossing
 
-    def that_matter(self, corners, shapes, facing) -> np.ndarray:
-        """(k,) bool: which may stand before any shape as seen from between ``corners`` (c, 3); see `before`."""
-        volumes = _Volumes.of(self.vertices, shapes, corners)
-        before, behind = (facing > 0).any(axis=1), (facing < 0).any(axis=1)
-        free, loose = volumes.free[..., 0], volumes.open[..., 0]
-        may = ((volumes.high.max(axis=3) > _SLIVER) | free).all(axis=1) & before[:, None]
-        may |= ((volumes.low.min(axis=3) < -_SLIVER) | free).all(axis=1) & behind[:, None]
-        may &= ((volumes.reach.max(axis=3) > _SLIVER) | loose).all(axis=1).T
-        return may.any(axis=1)
-
-
-@dataclass(frozen=True, eq=False)
-class _Volumes:
-    """How corners lie to the planes through points and edges, as heights over the extent of all.
-
-    Attributes
-    ----------
-    low, high : (k, w, s, r) float
-        Least and largest of shapes' corners, by blockers' edges: positive within blockers that face the point.
-    reach : (s, v, k, r) float
-        Largest of blockers' corners, by shapes' edges: positive within.
-    free, open : (k, w, 1, 1) and (s, v, 1, 1) bool
-        Which are no edges, of blockers and of shapes.
-    """
-
-    low: np.ndarray
-    high: np.ndarray
-    reach: np.ndarray
-    free: np.ndarray
-    open: np.ndarray
-
-    @classmethod
-    def of(cls, blockers, shapes, points) -> _Volumes:
-        centre = points.mean(axis=0)
-        blockers, shapes, eye = blockers - centre, shapes - centre, points - centre
-        extent = max(float(np.abs(part).max()) for part in (blockers, shapes, eye))
-        eye = np.concatenate([eye.T, np.ones((1, len(eye)))])
-        forms, side = _forms(blockers, shapes, extent)
-        heights = (forms.reshape(-1, 4) @ eye).reshape(*forms.shape[:4], -1)
-        back, along = _forms(shapes, blockers, extent)
-        reach = (back.reshape(-1, 4) @ eye).reshape(*back.shape[:4], -1).max(axis=3)
-        free, loose = ((sides <= 1e-12 * extent)[:, :, None, None] for sides in (side, along))
-        return cls(heights.min(axis=3), heights.max(axis=3), reach, free, loose)
+    def _places(self, points) -> np.ndarray:
+        return np.concatenate([(points - self.centre).T, np.ones((1, len(points)))])
 
 
 def _forms(edged, others, extent: float) -> tuple[np.ndarray, np.ndarray]:
-    """Affine forms of a point's place, positive where others' corners lie within an edge; and edges' lengths (k, w).
+    """Affine forms of a point's place, positive where others' corners lie within an edge; and edges' lengths (q, w).
 
     Parameters
     ----------
-    edged : (k, w, 3) float
-    others : (s, v, 3) float
+    edged : (q, w, 3) float
+    others : (q, v, 3) float
     extent : float
 
     Returns
     -------
-    forms : (k, w, s, v, 4) float
+    forms : (q, w, v, 4) float
         Nought where an edge and a corner lie on one line.
-    sides : (k, w) float
+    sides : (q, w) float
     """
     edge = np.roll(edged, -1, axis=1) - edged
-    normal = polygons.cross(edge[:, :, None, None], others - edged[:, :, None, None])
+    normal = polygons.cross(edge[:, :, None], others[:, None] - edged[:, :, None])
     length = np.sqrt(np.einsum("...c,...c->...", normal, normal))
     side = np.sqrt(np.einsum("...c,...c->...", edge, edge))
-    plane = length > 1e-12 * extent * side[:, :, None, None]
+    plane = length > 1e-12 * extent * side[:, :, None]
     scale = np.where(plane, 1.0 / np.where(plane, length * extent, 1.0), 0.0)
     forms = np.empty((*length.shape, 4))
     np.multiply(normal, scale[..., None], out=forms[..., :3])
-    forms[..., 3] = -np.einsum("kwsvc,kwc->kwsv", normal, edged) * scale
+    forms[..., 3] = -np.einsum("qwvc,qwc->qwv", forms[..., :3], edged)
     return forms, side
 
 
@@ -279,27 +309,45 @@ def frame(points, normal) -> np.ndarray:
     return places @ across + (points[0] @ normal) * normal
 
 
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """Blockers that may stand before shapes, as seen from between some corners.
+
+    Attributes
+    ----------
+    blockers : Blockers
+    shapes : (s, v, 3) float
+    overlaps : Overlaps
+        Of blockers and shapes.
+    """
+
+    blockers: Blockers
+    shapes: np.ndarray
+    overlaps: Overlaps
+
+    @classmethod
+    def of(cls, blockers: Blockers, shapes, corners, tolerance: float) -> Standing:
+        """Those of the blockers that matter."""
+        overlaps = Overlaps.of(blockers.vertices, shapes, corners)
+        if len(overlaps.outer):
+            overlaps = overlaps.take(overlaps.near(corners, blockers.facing(corners, None, tolerance)))
+        used, outer = np.unique(overlaps.outer, return_inverse=True)
+        return cls(blockers.take(used), shapes, replace(overlaps, outer=outer.reshape(-1)))
+
+
 def light_past(
-    outlines: Outlines,
-    blockers: Blockers,
-    unseen_backs,
-    seen: Shapes,
-    whole,
-    points,
-    normal,
-    mirrors: Sequence[Reflecting],
+    outlines: Outlines, standing: Standing, unseen_backs, seen: Shapes, points, normal, mirrors: Sequence[Reflecting]
 ) -> np.ndarray:
     """Illuminance by what is seen of polygons past blockers, as mirrors reflect it.
 
     Parameters
     ----------
     outlines : Outlines
-    blockers : Blockers
+    standing : Standing
     unseen_backs : (o,) bool
         Outlines that nobody need look for who is behind them.
     seen : Shapes
-    whole : (s, v, 3) float
-        Polygons that those are parts of.
+        What is seen of the shapes.
     points : (r, 3) float
     normal : (3,) float
     mirrors : sequence of Reflecting
@@ -309,25 +357,31 @@ def light_past(
     (r,) float [lx]
     """
     out = np.zeros(len(points))
-    facing = blockers.facing(points, unseen_backs, outlines.tolerance) if len(blockers) else np.zeros((0, len(points)))
-    if len(blockers) * len(whole) * len(points) > _FEW:
-        corners = frame(points, normal)
-        there = np.concatenate([facing.min(axis=1, keepdims=True), facing.max(axis=1, keepdims=True)], axis=1)
-        matter = blockers.that_matter(corners, whole, there)
-        blockers, facing = blockers.take(matter), facing[matter]
-    if not len(blockers):
+    blockers, overlaps = standing.blockers, standing.overlaps
+    if len(overlaps.outer):
+        facing = blockers.facing(points, unseen_backs, outlines.tolerance)
+        if len(overlaps.outer) * len(points) > _FEW:
+            overlaps = overlaps.take(overlaps.near(frame(points, normal), facing))
+    if not len(overlaps.outer):
         return _add_whole(out, seen, normal, mirrors)
-    clear = np.array([outlines.materials[o].is_transparent for o in blockers.outline], bool)
-    hides, crosses = blockers.before(points, whole, facing)
+    clear = np.array([outlines.materials[o].is_transparent for o in blockers.outline], bool)[overlaps.outer]
+    hides, crosses = overlaps.seen(points, facing)
     crosses[clear] |= hides[clear]
-    place = seen.polygon * len(points) + seen.row
-    crossed = crosses.reshape(len(blockers), -1).take(place, axis=1)
-    count = crossed.sum(axis=0)
-    count[hides[~clear].any(axis=0).ravel().take(place)] = -1
+    # what crosses follows shape after shape, for each receiver
+    shapes = len(standing.shapes)
+    rows, pairs = np.nonzero(crosses.T)
+    place = seen.row * shapes + seen.polygon
+    every = np.bincount(rows * shapes + overlaps.inner[pairs], minlength=len(points) * shapes)
+    start = (np.cumsum(every) - every)[place]
+    count = every[place]
+    hidden = np.zeros((shapes, len(points)), bool)
+    np.logical_or.at(hidden, overlaps.inner[~clear], hides[~clear])
+    count[hidden[seen.polygon, seen.row]] = -1
     _add_whole(out, seen.take(np.flatnonzero(count == 0)), normal, mirrors)
     by_pieces = count > 0
     if not any(mirror.varies for mirror in mirrors):
-        by_pieces &= crossed[clear].any(axis=0)
+        panes = np.bincount((rows * shapes + overlaps.inner[pairs])[clear[pairs]], minlength=len(every))
+        by_pieces &= panes[place] > 0
     if by_pieces.any():
         out += _by_pieces(outlines, blockers, seen.take(np.flatnonzero(by_pieces)), points, normal, mirrors)
         count[by_pieces] = -1
@@ -335,7 +389,7 @@ def light_past(
     for number in np.unique(count[count > 0]).tolist():
         mine = np.flatnonzero(count == number)
         some, row = seen.take(mine), seen.row[mine]
-        blocker = np.nonzero(crossed[:, mine].T)[1].reshape(-1, number).T
+        blocker = overlaps.outer[pairs[start[mine] + np.arange(number)[:, None]]]
         screens = corners.take(blocker, axis=2).transpose(2, 0, 1, 3) - points[row].T[:, None]
         factor = unhidden.form_factors(some.shape, screens, facing[blocker, row], normal)
         out += np.bincount(row, weights=_reflected(some, mirrors) * np.maximum(factor, 0.0), minlength=len(out))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from .visibility import OPEN
 _BESIDE_BORDERS = 2e-4
 """Shift of where beams end, in cells: in rooms of even measures many end exactly on borders between patches, and
 rounding shall not decide to which side."""
+
+_SKY_SUBDIVISION = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +50,12 @@ class Targets:
     def columns(self) -> int:
         """Columns of the sky and ground matrices."""
         return self.sky_parcels + 1
+
+    @cached_property
+    def sky_directions(self) -> np.ndarray:
+        """(sky_parcels · n, 3) float: places in each sky parcel whose mean luminance is the parcel's."""
+        parts = self.globe.subdirections(np.arange(self.sky_parcels), _SKY_SUBDIVISION)
+        return parts.reshape(-1, 3)
 
 
 @dataclass(frozen=True, eq=False)

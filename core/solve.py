@@ -31,9 +31,9 @@ _OF_SUN_PATCHES = 0.25
 _CLOSED = 1e-3
 """Share of bright polygons' light that may escape from what counts as closed."""
 
-_SKY_SUBDIVISION = 4
-_SOURCE_ROWS = 512
+_SOURCE_ROWS = 1024
 _PRODUCT_ROWS = 128
+_PRODUCT_COLUMNS = 512
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +100,7 @@ def solve_light(
     """See `Transfer.solve`."""
     _check_options(light, tolerance, cycles)
     geometry, recorder = transfer.geometry, Recorder(progress)
+    exact = cycles is not None  # so many cycles are linear in light to the last digit
     count = len(geometry.element_points)
     components = {
         name: np.zeros(count) for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular", "emitted")
@@ -110,10 +111,10 @@ def solve_light(
         recorder.skip("sky", "nothing sees the sky or the ground")
     elif sky.any():
         with recorder.stage("sky", 0.0):
-            mirrored = np.zeros(len(transfer.nodes.points))
-            mirrored[transfer.specular_rows] = np.pi * product(transfer.sky_specular, sky)
-            components["sky_direct"] = transfer.on_elements(np.pi * product(transfer.sky_direct, sky))
-            components["sky_specular"] = transfer.on_elements(mirrored)
+            components["sky_direct"] = transfer.on_elements(np.pi * product(transfer.sky_direct, sky, exact))
+            components["sky_specular"] = _of_rows(
+                transfer, transfer.specular_rows, transfer.sky_specular, np.pi * sky, exact
+            )
     else:
         recorder.skip("sky", "no sky and no ground light")
 
@@ -166,9 +167,8 @@ def follow_sun(geometry: Geometry, sun, cutoff: float, checkpoint) -> tuple[Sunl
 
 def sky_column(targets: Targets, light: Daylight) -> np.ndarray:
     """(c,) float: mean luminance of each sky parcel, and last the ground's [cd/m²]."""
-    globe, parcels = targets.globe, targets.sky_parcels
-    parts = globe.subdirections(np.arange(parcels), _SKY_SUBDIVISION)
-    luminance = light.sky_luminance(parts.reshape(-1, 3)).reshape(parcels, -1).mean(axis=1)
+    parcels = targets.sky_parcels
+    luminance = light.sky_luminance(targets.sky_directions).reshape(parcels, -1).mean(axis=1)
     return np.append(luminance, light.ground_luminance)
 
 
@@ -195,6 +195,7 @@ def interreflect(
 ) -> Field:
     """Add emitted and interreflected light to the components: the bright few's by themselves, the rest by the globe."""
     geometry = transfer.geometry
+    exact = cycles is not None
     emitters, sunny = bright
     sun = components["sun_direct"] + components["sun_specular"]
     none, adjusted = np.zeros(len(emitted)), np.zeros(4)
@@ -202,10 +203,10 @@ def interreflect(
     if emitted.any():
         if transfer.unhidden or not emitters:
             by_globe = none if emitters else emitted  # at free points the globe would err where patches do not
-            found = transfer.on_elements(gather_patches(transfer, emitted))
+            found = transfer.on_elements(gather_patches(transfer, emitted, exact))
         else:
             deep_emitted = emitted
-            found = _gather_bright(transfer, emitters, deep_emitted, 1.0, recorder.part(0.1, 0.4))
+            found = _gather_bright(transfer, emitters, deep_emitted, 1.0, exact, recorder.part(0.1, 0.4))
         components["emitted"], adjusted[0] = brought_home(transfer, found, geometry.of_elements("exitance"))
     sky = components["sky_direct"] + components["sky_specular"]
     smooth = sky + components["emitted"]
@@ -218,7 +219,7 @@ def interreflect(
     first = np.zeros(len(sun))
     if sunny:
         deep_reflected = reflectance * patch_means(geometry, sun - sunlight.blur)
-        first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, recorder.part(0.4, 0.8))
+        first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, exact, recorder.part(0.4, 0.8))
         first, adjusted[1] = brought_home(transfer, first, share * (sun - sunlight.blur))
     smooth, once = patch_means(geometry, smooth), patch_means(geometry, first)
 
@@ -230,7 +231,7 @@ def interreflect(
     else:
         settled = _cycles_after_first(transfer.exchange, reflectance, smooth, once, cycles, checkpoint)
     exitance = reflectance * settled
-    again = np.maximum(first + transfer.on_elements(gather_patches(transfer, exitance)), 0.0)
+    again = np.maximum(first + transfer.on_elements(gather_patches(transfer, exitance, exact)), 0.0)
     adjusted[2] = transfer.conservation.missing @ exitance
     if cycles is None:
         again, adjusted[3] = settled_home(transfer, again, sun + components["emitted"] + sky, share)
@@ -287,7 +288,7 @@ def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], li
 
 
 def _gather_bright(
-    transfer: Transfer, sources: list[Source], deep: np.ndarray, times: float, progress: Progress
+    transfer: Transfer, sources: list[Source], deep: np.ndarray, times: float, exact: bool, progress: Progress
 ) -> np.ndarray:
     """(e,) float: illuminance from bright polygons; by way of many mirrors, from their patches of exitance ``deep``."""
     geometry = transfer.geometry
@@ -298,9 +299,7 @@ def _gather_bright(
 
     def view(sheet: int) -> SourceView:
         if sheet not in views:
-            mine = np.flatnonzero(geometry.fracture.element_sheet == sheet)
-            corners = geometry.fracture.elements[mine].reshape(-1, 3)
-            views[sheet] = bright.seen_from(corners, geometry.element_normals[mine[0]])
+            views[sheet] = bright.seen_from(*transfer.sheet_corners[sheet])
         return views[sheet]
 
     def evaluate(nodes: Nodes, first: int) -> np.ndarray:
@@ -324,14 +323,21 @@ def _gather_bright(
         return np.stack([found, np.full(len(found), found.mean())], axis=1)
 
     nodes = settled(transfer.lattice, geometry.fracture, evaluate, times * transfer.times)
-    by_many = np.zeros(len(transfer.nodes.points))
-    by_many[transfer.deep_rows] = product(transfer.deep_factors, deep)
-    return nodes.on_elements(found) + transfer.on_elements(by_many)
+    return nodes.on_elements(found) + _of_rows(transfer, transfer.deep_rows, transfer.deep_factors, deep, exact)
 
 
-def gather_patches(transfer: Transfer, exitance: np.ndarray) -> np.ndarray:
+def _of_rows(transfer: Transfer, rows: np.ndarray, factors: np.ndarray, light: np.ndarray, exact: bool) -> np.ndarray:
+    """(e,) float: illuminance of the elements by factors ``(k, c)`` of some nodes alone."""
+    if not len(rows):
+        return np.zeros(len(transfer.geometry.element_points))
+    values = np.zeros(len(transfer.nodes.points))
+    values[rows] = product(factors, light, exact)
+    return transfer.on_elements(values)
+
+
+def gather_patches(transfer: Transfer, exitance: np.ndarray, exact: bool) -> np.ndarray:
     """(m,) float: illuminance of the nodes from patches of exitance ``(p,)`` [lx]."""
-    return product(transfer.form_factors, exitance) + transfer.conservation.made_up(exitance)
+    return product(transfer.form_factors, exitance, exact) + transfer.conservation.made_up(exitance)
 
 
 def brought_home(transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray) -> tuple[np.ndarray, float]:
@@ -370,7 +376,7 @@ def _spread(transfer: Transfer, illuminance: np.ndarray) -> np.ndarray:
     Enclosures share it as they share the light that has landed: what is dark beside a bright one stays so.
     """
     conservation, parts = transfer.conservation, transfer.conservation.enclosures
-    spread = np.where(illuminance > 0, transfer.on_elements(conservation.spread), 0.0)
+    spread = np.where(illuminance > 0, transfer.spread, 0.0)
     held = parts.sums(parts.of_elements, conservation.kept * spread)
     landed = np.where(held > 0, parts.sums(parts.of_elements, conservation.kept * illuminance), 0.0)
     share = landed / max(float(landed.sum()), 1e-300)
@@ -407,13 +413,26 @@ def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field:
     return relative * (total - exact) + LEAST * total
 
 
-def product(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """(m,) float: a float32 matrix times a float64 vector, summed in float64, some rows at a time."""
-    out = np.empty(len(matrix))
-    for first in range(0, len(matrix), _PRODUCT_ROWS):
-        rows = slice(first, first + _PRODUCT_ROWS)
-        out[rows] = matrix[rows].astype(float) @ vector
-    return out
+def product(matrix: np.ndarray, vector: np.ndarray, exact: bool = False) -> np.ndarray:
+    """(m,) float: a float32 matrix times a float64 vector.
+
+    Summed in float32, some columns at a time, which errs by less than 1e-6; ``exact``: in float64, some rows at a time,
+    so that sums of products are products of sums.
+    """
+    out = np.zeros(len(matrix))
+    if exact:
+        for first in range(0, len(matrix), _PRODUCT_ROWS):
+            rows = slice(first, first + _PRODUCT_ROWS)
+            out[rows] = matrix[rows].astype(float) @ vector
+        return out
+    scale = float(np.abs(vector).max(initial=0.0))
+    if scale == 0 or not len(matrix):
+        return out
+    shares = (vector / scale).astype(np.float32)
+    for first in range(0, len(shares), _PRODUCT_COLUMNS):
+        columns = slice(first, first + _PRODUCT_COLUMNS)
+        out += matrix[:, columns] @ shares[columns]
+    return scale * out
 
 
 def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:

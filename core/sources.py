@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
-from .blockers import Blockers, Shapes, above, between, frame, has_area, light_past, within_cones
+from .blockers import Blockers, Shapes, Standing, above, between, frame, has_area, light_past, within_cones
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
@@ -266,8 +266,8 @@ class _Path:
             shapes = polygons.clip(shapes, half.normal, half.offset)
         return shapes
 
-    def sources(self, number: int) -> tuple[np.ndarray, np.ndarray, Blockers]:
-        """Of a group: which of its sources may be seen (s,), what of them (s, u, 3), and what may stand before them."""
+    def sources(self, number: int) -> tuple[np.ndarray, Standing]:
+        """Of a group: which of its sources may be seen (s,), what of them, and what may stand before them."""
         found = self._sources.get(number)
         if found is None:
             group, outlines = self.bright.groups[number], self.bright.outlines
@@ -276,7 +276,7 @@ class _Path:
             visible, blockers = visible[which], self.blockers
             if len(which):
                 blockers = blockers.joined(between(outlines, self.corners, visible, [group.plane, *self.limits]))
-            found = self._sources[number] = which, visible, blockers
+            found = self._sources[number] = which, Standing.of(blockers, visible, self.corners, outlines.tolerance)
         return found
 
     def aperture(self, mirror: int) -> np.ndarray | None:
@@ -379,7 +379,7 @@ class SourceView:
         rows = np.flatnonzero(height > outlines.tolerance)
         if not len(rows):
             return
-        some, visible, blockers = path.sources(number)
+        some, standing = path.sources(number)
         if leg.opening is None:
             which, row = np.divmod(np.arange(len(some) * len(rows)), len(rows))
         else:
@@ -388,10 +388,10 @@ class SourceView:
             which, row = np.nonzero(bright.T)
         if not len(row):
             return
-        seen = leg.seen(rows[row], which, visible, group.exitance[some[which]])
+        seen = leg.seen(rows[row], which, standing.shapes, group.exitance[some[which]])
         if not len(seen.row):
             return
-        total += light_past(outlines, blockers, unseen, seen, visible, leg.points, path.horizon.normal, path.mirrors)
+        total += light_past(outlines, standing, unseen, seen, leg.points, path.horizon.normal, path.mirrors)
 
     def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, checkpoint, total: np.ndarray) -> None:
         outlines, tolerance = self.bright.outlines, self.bright.outlines.tolerance

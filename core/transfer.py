@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .blockers import frame
 from .convex import ConvexRoom
 from .daylight import Daylight
 from .errors import SceneError
@@ -112,6 +113,26 @@ class Transfer:
     def unhidden_cells(self) -> ConvexRoom | None:
         """Where nothing stands in the way: what free points see of `Geometry.cells`."""
         return ConvexRoom.around(self.geometry, self.geometry.cells.patches) if self.unhidden else None
+
+    @cached_property
+    def spread(self) -> np.ndarray:
+        """(e,) float: `Conservation.spread` on the elements."""
+        return self.on_elements(self.conservation.spread)
+
+    @cached_property
+    def sheet_corners(self) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+        """Of each sheet that has elements: corners that these lie between (c, 3), and its normal."""
+        cuts = self.geometry.fracture
+        order = np.argsort(cuts.element_sheet, kind="stable")
+        bounds = np.flatnonzero(np.diff(cuts.element_sheet[order])) + 1
+        return {
+            int(cuts.element_sheet[mine[0]]): (
+                frame(cuts.elements[mine].reshape(-1, 3), self.geometry.element_normals[mine[0]]),
+                self.geometry.element_normals[mine[0]],
+            )
+            for mine in np.split(order, bounds)
+            if len(mine)
+        }
 
     @cached_property
     def sees_out(self) -> bool:

@@ -12,10 +12,12 @@ from __future__ import annotations
 import numpy as np
 
 _ON_EDGE = 1e-12
-"""Over the lengths of the three vectors: less volume than this means that a corner lies on an edge's great circle."""
+"""Height of unit vectors over an edge's plane, times the edge's length, up to which they lie on its great circle."""
 
 _NO_EDGE = 1e-11
 """Sine of the angle that an edge spans, below which it bounds nothing."""
+
+_TINY = 1e-300
 
 _VALUES = 40_000
 """Corners times edges times pairs that are looked at together: they stay in cache."""
@@ -63,40 +65,31 @@ def _along_contours(shapes, screens, facing, normal) -> np.ndarray:
     k, _, w, n = screens.shape
     v = shapes.shape[1]
     start = np.concatenate([shapes, screens.transpose(1, 0, 2, 3).reshape(3, k * w, n)], axis=1)
-    end = np.concatenate(
-        [_following(shapes), _following(screens, 2).transpose(1, 0, 2, 3).reshape(3, k * w, n)], axis=1
-    )
+    start /= np.maximum(np.sqrt(_dot(start, start)), _TINY)
+    after = _following(start[:, v:].reshape(3, k, w, n), 2).reshape(3, k * w, n)
+    end = np.concatenate([_following(start[:, :v]), after], axis=1)
     pole = _cross(end, start)  # of polygons that face the point it looks inwards
     pole[:, v:] *= np.repeat(np.where(facing < 0, -1.0, 1.0), w, axis=0)
-    size = np.sqrt(_dot(start, start))
     length = np.sqrt(_dot(pole, pole))
-    reach = size * np.concatenate([_following(size[:v], 0), _following(size[v:].reshape(k, w, n), 1).reshape(-1, n)])
-    edge = length > _NO_EDGE * reach
-    rounding = _ON_EDGE * reach
+    edge = length > _NO_EDGE
+    pole *= edge
 
     def heights(planes: slice, corners: slice) -> np.ndarray:
-        """(p, c, n): of corners above the planes of edges; 0 on them, 1 where there is no edge."""
+        """(p, c, n): of corners above the planes of edges; nearly nought where there is no edge."""
         out = pole[0, planes, None] * start[0, None, corners]
         out += pole[1, planes, None] * start[1, None, corners]
         out += pole[2, planes, None] * start[2, None, corners]
-        out[np.abs(out) <= rounding[planes, None] * size[None, corners]] = 0.0
-        np.copyto(out, 1.0, where=~edge[planes, None])
+        out += _TINY
         return out
-
-    def aligned(planes: slice, corners: slice, both) -> np.ndarray:
-        """(j,) bool: whether edges that lie on each other, at indices ``both``, have the same inner side."""
-        p, c, m = both
-        p, c = p + planes.start, c + corners.start
-        return (pole[:, p, m] * pole[:, c, m]).sum(axis=0) > 0
 
     own, others = slice(0, v), slice(v, v + k * w)
     # of the screens' edges what lies within the polygon, borders not included
     height = heights(own, others)
     after = _following(height.reshape(v, k, w, n), 2).reshape(v, k * w, n)
-    low, high = _between(height, after, (height == 0) & (after == 0) & edge[own, None])
+    low, high = _between(height, after, _lying(height, after, edge[own]))
     low, high = np.concatenate([np.zeros((v, n)), low]), np.concatenate([np.ones((v, n)), high])
     # of all edges what each screen covers
-    begin, finish = np.full((k, v + k * w, n), 2.0), np.full((k, v + k * w, n), 2.0)
+    covers = np.full((2, k, v + k * w, n), 2.0)
     every = slice(0, v + k * w) if k > 1 else own
     for j in range(k):
         mine = slice(v + j * w, v + (j + 1) * w)
@@ -105,60 +98,69 @@ def _along_contours(shapes, screens, facing, normal) -> np.ndarray:
         if k > 1:
             parts.append(_following(height[:, v:].reshape(w, k, w, n), 2).reshape(w, k * w, n))
         after = np.concatenate(parts, axis=1)
-        lies = (height == 0) & (after == 0) & edge[mine, None]
-        if lies.any():
+        lies = _lying(height, after, edge[mine])
+        if lies is not None:
             # where two lie on each other with the same inner side, one counts: the later screen's, never the polygon's
-            both = np.nonzero(lies)
-            covered = aligned(mine, every, both) & (both[1] < mine.start)
-            lies[tuple(index[covered] for index in both)] = False
-        covers = _between(height, after, lies)
-        empty = covers[0] >= covers[1]
-        for out, found in zip((begin, finish), covers, strict=True):
-            out[j, every] = np.where(empty, 2.0, found)
-            out[j, mine] = 2.0
-    return _sum_of_gaps(low, high, begin, finish, start, end, pole, length, v, normal)
+            plane, other, pair = np.nonzero(lies)
+            alike = (pole[:, mine.start + plane, pair] * pole[:, other, pair]).sum(axis=0) > 0
+            covered = alike & (other < mine.start)
+            lies[plane[covered], other[covered], pair[covered]] = False
+        covers[:, j, every] = _between(height, after, lies)
+        covers[:, j, mine] = 2.0
+    return _sum_of_gaps(low, high, covers[0], covers[1], start, end, pole, length, v, normal)
+
+
+def _lying(first, last, edge) -> np.ndarray | None:
+    """(p, c, n) bool: segments that lie on the great circles of edges, whose heights become 1; None where none do."""
+    lies = np.abs(first) <= _ON_EDGE * edge[:, None]
+    if not lies.any():
+        return None
+    lies &= np.abs(last) <= _ON_EDGE
+    lies &= edge[:, None]
+    if not lies.any():
+        return None
+    first[lies] = last[lies] = 1.0  # rounding shall not cut them
+    return lies
 
 
 def _between(first, last, outside) -> tuple[np.ndarray, np.ndarray]:
-    """(c, n) twice: where edges enter and leave a convex shape, as shares of their lengths.
+    """(c, n) twice: where edges enter and leave a convex shape, as shares of their lengths; the same where they do not.
 
     ``first`` and ``last`` (p, c, n) are the heights of their ends above the planes of its edges; ``outside``: an edge
     that lies in such a plane counts as not within.
     """
     change = first - last
-    change[change == 0] = -1e-300
-    with np.errstate(over="ignore"):
-        cut = first / change
+    with np.errstate(divide="ignore", over="ignore"):
+        cut = np.divide(first, change, out=first)
     rising = change < 0
-    begin = np.where(rising, cut, 0.0).max(axis=0)
-    finish = np.where(rising, 1.0, cut).min(axis=0)
-    if outside.any():
+    begin = np.where(rising, cut, 0.0).max(axis=0, initial=0.0)
+    np.copyto(cut, 1.0, where=rising)
+    finish = cut.min(axis=0, initial=1.0)
+    if outside is not None:
         finish[outside.any(axis=0)] = -1.0
-    return np.maximum(begin, 0.0), np.minimum(finish, 1.0)
+    return begin, np.maximum(finish, begin, out=finish)
 
 
 def _sum_of_gaps(low, high, begin, finish, start, end, pole, length, corners: int, normal) -> np.ndarray:
     """(n,): Lambert's sum over what covers ``(k, c, n)`` leave of edges from ``low`` to ``high``."""
+    count = low.shape[1]
     if len(begin) > 1:
         order = np.argsort(begin, axis=0)
         begin, finish = np.take_along_axis(begin, order, axis=0), np.take_along_axis(finish, order, axis=0)
-    total, reached = np.zeros(low.shape[1]), low
-    along = np.divide(
-        normal[0] * pole[0] + normal[1] * pole[1] + normal[2] * pole[2],
-        length,
-        out=np.zeros_like(length),
-        where=length > 0,
-    )
+    along = normal[0] * pole[0] + normal[1] * pole[1] + normal[2] * pole[2]
+    along /= np.maximum(length, _TINY)
     along[corners:] *= -1.0
-    step = end - start
-    squares = _dot(start, start), _dot(start, step), _dot(step, step)
+    cosine = _dot(start, end).ravel()
+    along, length = along.ravel(), length.ravel()
+    total, reached = np.zeros(count), low
     for j in range(len(begin) + 1):
         until = high if j == len(begin) else np.minimum(begin[j], high)
-        edge, pair = np.nonzero(until > reached)
-        a, b = reached[edge, pair], until[edge, pair]
-        here, slope, square = (values[edge, pair] for values in squares)
-        angle = np.arctan2((b - a) * length[edge, pair], here + (a + b) * slope + a * b * square)
-        total += np.bincount(pair, weights=angle * along[edge, pair], minlength=len(total))
+        some = np.flatnonzero(until > reached)
+        a, b = reached.ravel().take(some), until.ravel().take(some)
+        aside = cosine.take(some) - 1.0
+        # between points of the chord from one unit vector to the next
+        angle = np.arctan2((b - a) * length.take(some), 1.0 + (a + b - 2.0 * a * b) * aside)
+        total += np.bincount(some % count, weights=angle * along.take(some), minlength=count)
         if j < len(begin):
             reached = np.maximum(reached, finish[j])
     return total / (2 * np.pi)
