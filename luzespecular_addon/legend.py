@@ -15,6 +15,9 @@ from .translations import CONTEXT
 _STEPS = 64
 _MARGIN, _WIDTH, _HEIGHT = 24, 18, 220  # pixels at a resolution scale of 1
 
+_APART = 0.075
+"""Least distance of an end's value from a tick's, over the length of the bar."""
+
 _handles: list[object] = []
 
 
@@ -36,9 +39,12 @@ def label(value: float) -> str:
 
 
 def entries(scale: colours.ColourScale) -> list[tuple[float, str]]:
-    """Return position (0 to 1) and text of each tick of a scale."""
-    ticks = scale.ticks()
-    return list(zip(scale.position(ticks).tolist(), (label(tick) for tick in ticks), strict=True))
+    """Return position (0 to 1) and text of each tick of a scale, and of its ends where no tick is near."""
+    found = dict(zip(scale.position(scale.ticks()).tolist(), map(label, scale.ticks()), strict=True))
+    for end, value in ((0.0, scale.low), (1.0, scale.high)):
+        if min(abs(end - position) for position in found) > _APART:
+            found[end] = label(value)
+    return sorted(found.items())
 
 
 def title(scene: bpy.types.Scene) -> str:

@@ -209,9 +209,11 @@ def title(scene: bpy.types.Scene) -> str:
     """Return date, hour and sky of a scene's settings in one line."""
     settings = scene.luzespecular
     site, sky = settings.site, settings.sky
-    kind = next(name for key, name, _ in SKY_ITEMS if key == sky.kind)
+    kind = iface_(next(name for key, name, _ in SKY_ITEMS if key == sky.kind), CONTEXT)
+    if sky.kind == "CIE":
+        kind = f"{kind} {sky.cie_type}"
     time = iface_("solar time") if site.time_kind == "SOLAR" else iface_("clock time")
-    return f"{light.date_of(site).isoformat()}, {clock(site.hour)} {time}, {iface_(kind, CONTEXT)}"
+    return f"{light.date_of(site).isoformat()}, {clock(site.hour)} {time}, {kind}"
 
 
 def _preparing(accuracy: bpy.types.PropertyGroup, area: float) -> dict:

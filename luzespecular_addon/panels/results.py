@@ -8,6 +8,7 @@ import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
 from .. import display, isolines, render_legend
+from ..legend import label
 from ..translations import CONTEXT
 from .drawing import Sidebar, draw_notices, draw_wrapped
 
@@ -93,6 +94,7 @@ class LUZESPECULAR_PT_renders(_PartOfResults, bpy.types.Panel):
     bl_label = "Renders and Pictures"
     bl_description = "False colours and their legend in renders and pictures"
     bl_idname = "LUZESPECULAR_PT_renders"
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         """Draw the panel."""
@@ -185,8 +187,8 @@ def _draw_table(layout: bpy.types.UILayout, results: bpy.types.PropertyGroup) ->
         text = iface_("{name}: {area:.2f} m², uniformity {uniformity:.2f}")
         text = text.format(name=_side_name(chosen), area=chosen.area, uniformity=chosen.uniformity)
         column.label(text=text, translate=False)
-        text = iface_("Mean {mean:.1f} lx, from {minimum:.1f} to {maximum:.1f}")
-        text = text.format(mean=chosen.mean, minimum=chosen.minimum, maximum=chosen.maximum)
+        values = {name: label(getattr(chosen, name)) for name in ("mean", "minimum", "maximum")}
+        text = iface_("Mean {mean} lx, from {minimum} to {maximum}").format(**values)
         column.label(text=text, translate=False)
 
 

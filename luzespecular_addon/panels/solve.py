@@ -48,8 +48,10 @@ def _draw_progress(layout: bpy.types.UILayout, state: bpy.types.PropertyGroup) -
     share = f"{100.0 * state.fraction:.0f} %  " if state.fraction else ""
     row.progress(factor=state.fraction, text=share + iface_(state.stage))
     row.operator("luzespecular.cancel", text="", icon="CANCEL")
-    text = iface_("Esc cancels") if state.seconds_left < 0.0 else time_left(state.seconds_left)
-    layout.label(text=text, icon="TIME", translate=False)
+    if state.seconds_left < 0.0:
+        layout.label(text="Esc cancels", icon="EVENT_ESC")
+    else:
+        layout.label(text=time_left(state.seconds_left), icon="TIME", translate=False)
 
 
 CLASSES = (LUZESPECULAR_PT_solve,)

@@ -67,7 +67,7 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
         name="Scale", description="False-colour scale", items=SCALE_ITEMS, default="VIRIDIS", update=_recolour
     )
     scaling: EnumProperty(
-        name="Steps",
+        name="Mapping",
         description="How values are spread over the colours",
         items=(
             ("LOG", "Logarithmic", "Equal ratios are equally far apart, as the eye judges"),
@@ -134,7 +134,7 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
         update=_switch_renders,
     )
     legend_size: FloatProperty(
-        name="Legend Size (%)",
+        name="Size (%)",
         description="Height of the legend, as a share of the picture's",
         min=10.0,
         max=95.0,

@@ -1,5 +1,7 @@
 """False colours: the scales, their ranges and ticks, and what becomes of a value on its way to a corner."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -138,6 +140,19 @@ def test_ends_that_blender_has_stored_keep_their_ticks(colours, logarithmic):
     ticks = colours.ColourScale("VIRIDIS", low, high, logarithmic).ticks()
     assert ticks[0] == pytest.approx(0.05 if logarithmic else 0.1)
     assert ticks[-1] == pytest.approx(0.5 if logarithmic else 0.7)
+
+
+def test_legends_tell_their_ends(addon):
+    def told(low, high, logarithmic=True):
+        return addon.legend.entries(addon.colours.ColourScale("VIRIDIS", low, high, logarithmic))
+
+    found = told(200.0, 100_000.0)
+    assert found[0] == (0.0, "200") and found[1][1] == "500" and found[-1] == (1.0, "100 000")
+    assert [text for _, text in told(137.0, 1050.0)] == ["137", "200", "500", "1 000"]  # 1050 has no room
+    found = told(130.0, 770.0, False)
+    assert found[0] == (0.0, "130") and found[-1] == (1.0, "770")
+    assert all(after[0] - before[0] > 0.05 for before, after in pairwise(found))
+    assert [text for _, text in told(0.0, 500.0, False)] == ["0", "100", "200", "300", "400", "500"]
 
 
 @given(low=st.floats(1e-2, 1e4), ratio=st.floats(1.01, 1e5), logarithmic=st.booleans())

@@ -35,6 +35,8 @@ def steps(window):
     yield from _click(window, "fineness", below=-59)  # opens Surfaces
     yield from window.scroll(times=15)
     yield from _click(window, "fineness", below=34)  # opens Scene Check
+    yield from window.scroll()
+    yield from _click(window, "show_backs", below=32)  # opens Renders and Pictures
     yield from window.scroll(down=False)
     properties = window.area("PROPERTIES")
     properties.spaces.active.context = "MATERIAL"

@@ -17,9 +17,7 @@ TEXTS = {
     "Max": "Máx",
     "{name}: {area:.2f} m², uniformity {uniformity:.2f}": "{name}: {area:.2f} m², uniformidade {uniformity:.2f}",
     "{name} (back)": "{name} (verso)",
-    "Mean {mean:.1f} lx, from {minimum:.1f} to {maximum:.1f}": (
-        "Média {mean:.1f} lx, de {minimum:.1f} a {maximum:.1f}"
-    ),
+    "Mean {mean} lx, from {minimum} to {maximum}": "Média {mean} lx, de {minimum} a {maximum}",
     "Illuminance": "Iluminância",
     "not computed": "não calculado",
     "Show On": "Mostrar em",
@@ -72,7 +70,7 @@ TEXTS = {
     ),
     "Grey": "Cinza",
     "Dark to light grey": "Do cinza escuro ao claro",
-    "Steps": "Passos",
+    "Mapping": "Distribuição",
     "How values are spread over the colours": "Como os valores se distribuem pelas cores",
     "Logarithmic": "Logarítmica",
     "Equal ratios are equally far apart, as the eye judges": "Razões iguais ficam equidistantes, como o olho julga",
@@ -161,7 +159,7 @@ TEXTS = {
     "In the upper left corner of the picture": "No canto superior esquerdo da imagem",
     "Top Right": "Em cima à direita",
     "In the upper right corner of the picture": "No canto superior direito da imagem",
-    "Legend Size (%)": "Tamanho da legenda (%)",
+    "Size (%)": "Tamanho (%)",
     "Height of the legend, as a share of the picture's": "Altura da legenda, como parcela da altura da imagem",
     "Renders need a camera: Add > Camera": "Renderizações precisam de uma câmera: Adicionar > Câmera",
     "The legend needs a perspective or an orthographic camera": (
