@@ -18,6 +18,9 @@ from .specular import ChainLimits, GroupSight
 _CHUNK_CELLS = 500_000
 """Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
 
+_MOST_SIGHTS = 100
+"""Planes whose view is kept for other receivers of theirs; of facets of meshes there are too many."""
+
 _ROOM = 1.5
 """Room for rows, over those known to be needed."""
 
@@ -161,10 +164,13 @@ def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, 
 
     def work(chunk: np.ndarray, checkpoint) -> None:
         sheet = int(sheets[chunk[0]])
-        if sheet not in sights:
+        sight = sights.get(sheet)
+        if sight is None:
             normal = geometry.element_normals[nodes.element[chunk[0]]]
-            sights[sheet] = sight_of(geometry, limits, normal, float(normal @ nodes.points[chunk[0]]))
-        rows.put(chunk, gather(sights[sheet], nodes.points[chunk], geometry.targets, checkpoint))
+            sight = sight_of(geometry, limits, normal, float(normal @ nodes.points[chunk[0]]))
+            if len(sights) < _MOST_SIGHTS:
+                sights[sheet] = sight
+        rows.put(chunk, gather(sight, nodes.points[chunk], geometry.targets, checkpoint))
 
     run_parallel(work, chunks, threads, report)
 

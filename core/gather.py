@@ -227,9 +227,9 @@ def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.
         distance = height / dots(towards, s.obstacles.normals.take(obstacle, axis=0))
     distance = np.nan_to_num(distance, posinf=1e30, neginf=-1e30)
     points = s.points.take(row, axis=0) + distance[:, None] * towards
-    cells = []
+    cells, axes = [], targets.planes.sheet_axes.take(sheet, axis=0)
     for k in (0, 1):
-        place = dots(targets.planes.sheet_axes[:, k].take(sheet, axis=0), points) - grid.grid_origin[side, k]
+        place = dots(axes[:, k], points) - grid.grid_origin[side, k]
         place = place * grid.grid_scale[side, k] + _BESIDE_BORDERS
         cells.append(np.clip(place, 0, grid.grid_shape[side, k] - 0.5).astype(np.int64))
     return row, grid.grid[base + cells[0] * grid.grid_shape[side, 1] + cells[1]], weight

@@ -11,6 +11,7 @@ import numpy as np
 from .clusters import MANY_FACETS
 from .doubles import seen_once
 from .errors import SceneError
+from .facets import Facets
 from .fracture import Fracture, fracture
 from .gather import Targets
 from .globe import Globe
@@ -20,7 +21,7 @@ from .patches import make_patches
 from .planes import Planes
 from .scene import Scene
 from .solids import find_solids
-from .specular import MANY_OUTLINES, ChainLimits, GroupSight
+from .specular import ChainLimits, GroupSight
 
 PATCHES = 1_000
 """Patches that exitance is resolved in, about; runs of cells get more where light is uneven."""
@@ -181,16 +182,19 @@ def make_geometry(
     )
     outline_surface = planes.sheet_surface[planes.outline_sheet]
     outline_normals = planes.sheet_normal[planes.outline_sheet]
+    offsets = np.einsum("oc,oc->o", outline_normals, planes.outlines[:, 0])
+    tolerance = max(1e-10 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max()))
+    facets = Facets.of(planes.outlines, outline_normals, offsets, tolerance, globe)
+    solids = find_solids(planes, np.array([not s.material.is_transparent for s in surfaces]))
     outlines = Outlines(
         vertices=planes.outlines,
         normals=outline_normals,
-        offsets=np.einsum("oc,oc->o", outline_normals, planes.outlines[:, 0]),
+        offsets=offsets,
         materials=[surfaces[k].material for k in outline_surface],
         two_sided=two_sided[outline_surface],
-        tolerance=max(1e-10 * planes.size, 8 * float(np.finfo(float).eps) * float(np.abs(planes.centre).max())),
-        solids=find_solids(planes, np.array([not s.material.is_transparent for s in surfaces]))
-        if len(planes.outlines) <= MANY_OUTLINES
-        else None,  # single rays stop at the nearest outline anyway
+        tolerance=tolerance,
+        solids=solids if facets is None else solids.having(facets.large),
+        facets=facets,
     )
     return Geometry(
         planes,

@@ -40,7 +40,7 @@ _FEWEST_OWN = 1_000
 _FACET = 2
 """Elements of a plane that counts as a facet."""
 
-_SHARED = 10_000
+_SHARED = 6_000
 """Receivers that they share where there are more, about."""
 
 _MOST_SPLITS = 3

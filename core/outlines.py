@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .facets import Facets
 from .materials import Material
 from .projection import Obstacles
 from .rays import RayScene
@@ -27,6 +28,8 @@ class Outlines:
     tolerance : float
         Length below which points count as lying on a plane [m].
     solids : Solids, optional
+    facets : Facets, optional
+        Where there are too many for each to be projected.
     """
 
     vertices: np.ndarray
@@ -36,6 +39,7 @@ class Outlines:
     two_sided: np.ndarray
     tolerance: float
     solids: Solids | None = None
+    facets: Facets | None = None
 
     @cached_property
     def rays(self) -> RayScene:
@@ -57,6 +61,11 @@ class Outlines:
         """All outlines, uncut, as obstacles."""
         bounding = np.ones(self.vertices.shape[:2], bool)
         return Obstacles(np.arange(len(self.vertices)), self.vertices, bounding, self.normals, self.offsets)
+
+    @cached_property
+    def projected(self) -> np.ndarray:
+        """(l,) int: outlines that are projected on the globe."""
+        return np.arange(len(self.vertices)) if self.facets is None else self.facets.large
 
     @cached_property
     def back_counts(self) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,12 +9,12 @@ import numpy as np
 
 from . import polygons
 from .arrays import dots
+from .tree import Tree
 
 _FEW = 48
-_LEAF = 4
 
-_SUBTREE = 12
-"""Levels of the tree below boxes that rays go through one after the other, nearest first."""
+_EACH = 20_000
+"""Of more outlines it is their boxes that are asked whether they lie above planes."""
 
 _MISS = -1
 
@@ -83,15 +82,24 @@ class RayScene:
         return inward, np.where(length[:, :, 0] > 0, start, -np.inf)
 
     @cached_property
-    def _tree(self) -> _Tree:
-        return _Tree.over(self.vertices, self.tolerance)
+    def _edge_by_edge(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        inward, start = self._edges
+        return [(np.ascontiguousarray(inward[:, e]), np.ascontiguousarray(start[:, e])) for e in range(start.shape[1])]
 
-    def nearest(self, points, directions) -> tuple[np.ndarray, np.ndarray]:
+    @cached_property
+    def _tree(self) -> Tree:
+        return Tree.over(self.vertices, self.tolerance)
+
+    def nearest(self, points, directions, within=np.inf, among: Tree | None = None) -> tuple[np.ndarray, np.ndarray]:
         """First outline that each ray meets.
 
         Parameters
         ----------
         points, directions : (n, 3) float
+        within : (n,) float, optional
+            Distances beyond which nothing is looked for, in lengths of the direction.
+        among : Tree, optional
+            Of the outlines to look for, see `above`.
 
         Returns
         -------
@@ -102,9 +110,19 @@ class RayScene:
         """
         points, directions = np.asarray(points, float), np.asarray(directions, float)
         outline, distance = np.empty(len(points), np.int64), np.empty(len(points))
+        limit = np.broadcast_to(np.asarray(within, float), len(points))
         for some in self._blocks(len(points)):
-            outline[some], distance[some] = self._first(points[some].T, directions[some].T)
+            outline[some], distance[some] = self._first(points[some].T, directions[some].T, limit[some], among)
         return outline, distance
+
+    def above(self, normals, offsets) -> Tree:
+        """Of outlines with some corner above every plane ``normals (h, 3) · x = offsets (h,)``."""
+        if len(self.vertices) > _EACH:
+            return self._tree.above(normals, offsets)
+        alive = np.ones(len(self.vertices), bool)
+        for normal, offset in zip(normals, offsets, strict=True):
+            alive &= (self.vertices @ normal > offset + self.tolerance).any(axis=1)
+        return self._tree.of(alive)
 
     def through_mirrors(self, points, directions, brightness, mirrors, reflectance, cutoff: float, most: int) -> Flight:
         """Follow rays from mirror to mirror, up to what is none.
@@ -150,7 +168,7 @@ class RayScene:
         """Follow a block of rays; points and directions (3, n), as NumPy is fastest along long rows."""
         ray, factor, flown = first + np.arange(points.shape[1]), np.ones(points.shape[1]), 0
         while len(ray):
-            outline, distance = self._first(points, directions)
+            outline, distance = self._first(points, directions, np.full(points.shape[1], np.inf), None)
             normal = self.normals[outline].T
             slope = (normal * directions).sum(axis=0)
             share = np.where(slope < 0, reflectance[0, outline], reflectance[1, outline])
@@ -173,26 +191,27 @@ class RayScene:
                 ray, factor, brightness, left = ray[kept], factor[kept], brightness[kept], left[kept]
                 points, directions = points[:, kept], directions[:, kept]
 
-    def _first(self, points, directions) -> tuple[np.ndarray, np.ndarray]:
-        """Outlines that rays ``(3, n)`` meet first, and how far along."""
+    def _first(self, points, directions, within, among: Tree | None) -> tuple[np.ndarray, np.ndarray]:
+        """Outlines that rays ``(3, n)`` meet first within distances ``(n,)``, and how far along."""
         if len(self.vertices) <= _FEW:
-            return self._first_of_few(points, directions)
+            return self._first_of_few(points, directions, within)
         outline = np.full(points.shape[1], _MISS)
-        distance = np.full(points.shape[1], np.inf)
+        distance = np.array(within, float)
         points, directions = np.ascontiguousarray(points.T), np.ascontiguousarray(directions.T)
 
         def meet(ray: np.ndarray, candidate: np.ndarray) -> None:
             self._meet(ray, candidate, points, directions, outline, distance)
 
-        self._tree.search(points, directions, distance, meet)
+        (among or self._tree).search(points, directions, distance, meet)
+        distance[outline == _MISS] = np.inf
         return outline, distance
 
-    def _first_of_few(self, points, directions) -> tuple[np.ndarray, np.ndarray]:
+    def _first_of_few(self, points, directions, within) -> tuple[np.ndarray, np.ndarray]:
         """As `_first`: planes by distance, until one is met within its outline."""
         height = self.offsets[:, None] - self.normals @ points
         with np.errstate(divide="ignore", invalid="ignore"):
             along = height / (self.normals @ directions)
-        ahead = along > 0
+        ahead = (along > 0) & (along < within)
         ahead &= np.abs(height, out=height) > self.tolerance
         along[~ahead] = np.inf
         outline = along.argmin(axis=0)
@@ -237,110 +256,19 @@ class RayScene:
         return moved
 
     def _meet(self, ray, candidate, points, directions, outline, distance) -> None:
-        normal = self.normals[candidate]
-        slope = dots(directions.take(ray, axis=0), normal)
-        height = self.offsets[candidate] - dots(points.take(ray, axis=0), normal)
+        way, normal = directions.take(ray, axis=0), self.normals.take(candidate, axis=0)
+        place = points.take(ray, axis=0)
+        height = self.offsets.take(candidate) - dots(place, normal)
         with np.errstate(divide="ignore", invalid="ignore"):
-            along = height / slope
-        near = (along > 0) & (np.abs(height) > self.tolerance) & (along < distance[ray])
-        ray, candidate, along = ray[near], candidate[near], along[near]
-        place = points[ray] + along[:, None] * directions[ray]
-        inward, start = self._edges
-        inside = (np.einsum("nwc,nc->nw", inward[candidate], place) >= start[candidate]).all(axis=1)
-        ray, candidate, along = ray[inside], candidate[inside], along[inside]
+            along = height / dots(way, normal)
+        near = np.flatnonzero((along > 0) & (np.abs(height) > self.tolerance) & (along < distance.take(ray)))
+        ray, candidate, along = ray.take(near), candidate.take(near), along.take(near)
+        place = place.take(near, axis=0) + along[:, None] * way.take(near, axis=0)
+        for inward, start in self._edge_by_edge:
+            inside = np.flatnonzero(dots(inward.take(candidate, axis=0), place) >= start.take(candidate))
+            ray, candidate, along = ray.take(inside), candidate.take(inside), along.take(inside)
+            place = place.take(inside, axis=0)
         # several candidates of one ray may be here: write the nearest last
         order = np.argsort(-along, kind="stable")
         ray, candidate, along = ray[order], candidate[order], along[order]
         outline[ray], distance[ray] = candidate, along
-
-
-@dataclass(frozen=True, eq=False)
-class _Tree:
-    """Complete binary tree of bounding boxes over outlines in Morton order."""
-
-    order: np.ndarray
-    boxes: list[np.ndarray]
-
-    @classmethod
-    def over(cls, vertices: np.ndarray, tolerance: float) -> _Tree:
-        low, high = vertices.min(axis=1), vertices.max(axis=1)
-        order = np.argsort(_morton(0.5 * (low + high)), kind="stable")
-        leaves = 1 << max(0, int(np.ceil(np.log2(len(order) / _LEAF))))
-        padded = np.full(leaves * _LEAF, _MISS)
-        padded[: len(order)] = order
-        pad = max(tolerance, 1e-12)
-        lows = np.where((padded >= 0)[:, None], low[padded] - pad, np.inf).reshape(leaves, _LEAF, 3).min(axis=1)
-        highs = np.where((padded >= 0)[:, None], high[padded] + pad, -np.inf).reshape(leaves, _LEAF, 3).max(axis=1)
-        boxes = [np.stack([lows, highs], axis=1)]
-        while len(boxes[0]) > 1:
-            below = boxes[0].reshape(-1, 2, 2, 3)
-            boxes.insert(0, np.stack([below[:, :, 0].min(axis=1), below[:, :, 1].max(axis=1)], axis=1))
-        return cls(padded, boxes)
-
-    def search(self, points, directions, distance, meet: Callable[[np.ndarray, np.ndarray], None]) -> None:
-        """Find outlines that rays may meet, nearest boxes first.
-
-        Parameters
-        ----------
-        points, directions : (n, 3) float
-        distance : (n,) float
-            To the nearest hit so far: what is farther is not looked at.
-        meet : callable(ray, outline)
-            Called with pairs whose leaf's box the ray meets; lowers ``distance``.
-        """
-        with np.errstate(divide="ignore"):
-            inverse = 1.0 / np.where(directions == 0, 1e-300, directions)
-        rays = points, inverse, distance
-        first = max(1, len(self.boxes) - _SUBTREE)
-        every = np.arange(len(points))
-        ray, node, enter = self._down(rays, every, np.zeros(len(points), np.int64), range(first))
-        order = np.lexsort((enter, ray))
-        ray, node, enter = ray[order], node[order], enter[order]
-        turn = np.arange(len(ray)) - np.searchsorted(ray, ray)
-        level = np.frexp(turn + 1.0)[1]  # the first, the next two, the next four ...
-        for now in range(1, int(level.max(initial=0)) + 1):
-            mine = np.flatnonzero((level == now) & (enter < distance[ray]))
-            if not len(mine):
-                continue
-            some, leaf, _ = self._down(rays, *_halves(ray[mine], node[mine]), range(first, len(self.boxes)))
-            for k in range(_LEAF):
-                candidate = self.order[leaf * _LEAF + k]
-                real = candidate >= 0
-                meet(some[real], candidate[real])
-
-    def _down(self, rays, ray, node, levels: range):
-        """Pairs of ray and box on the last of some levels that are met before what is known; and how far they are."""
-        points, inverse, distance = rays
-        enter = np.zeros(len(ray))
-        for level in levels:
-            boxes = self.boxes[level].take(node, axis=0)
-            start, factor = points.take(ray, axis=0), inverse.take(ray, axis=0)
-            with np.errstate(invalid="ignore", over="ignore"):
-                a = (boxes[:, 0] - start) * factor
-                b = (boxes[:, 1] - start) * factor
-            near, far = np.minimum(a, b), np.maximum(a, b)
-            enter = np.maximum(np.maximum(near[:, 0], near[:, 1]), near[:, 2])
-            leave = np.minimum(np.minimum(far[:, 0], far[:, 1]), far[:, 2])
-            met = (leave >= enter) & (leave > 0) & (enter < distance[ray])
-            met &= boxes[:, 0, 0] <= boxes[:, 1, 0]  # empty boxes have no sides
-            ray, node, enter = ray[met], node[met], enter[met]
-            if level + 1 < levels.stop:
-                ray, node = _halves(ray, node)
-        return ray, node, enter
-
-
-def _halves(ray: np.ndarray, node: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of ray and box with both halves of each box on the next level."""
-    node = np.repeat(2 * node, 2)
-    node[1::2] += 1
-    return np.repeat(ray, 2), node
-
-
-def _morton(points: np.ndarray) -> np.ndarray:
-    extent = np.maximum(np.ptp(points, axis=0), 1e-300)
-    cell = ((points - points.min(axis=0)) / extent * 1023).astype(np.int64)
-    code = np.zeros(len(points), np.int64)
-    for bit in range(10):
-        for axis in range(3):
-            code |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return code

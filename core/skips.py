@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from .geometry import Geometry
-from .specular import MANY_OUTLINES
 
 
 def needless(geometry: Geometry, sees_out: bool, unhidden: bool) -> Iterator[tuple[str, str]]:
@@ -34,7 +33,7 @@ def needless(geometry: Geometry, sees_out: bool, unhidden: bool) -> Iterator[tup
     blind = np.count_nonzero(~outlines.back_counts)
     if blind:
         yield "backs", f"{blind} of {len(outlines.vertices)} outlines have a back that receives nothing"
-    if len(outlines.vertices) <= MANY_OUTLINES:
+    if outlines.facets is None:
         apart, pairs = _hidden_pairs(geometry)
         if apart:
             yield "pairs that cannot see each other", f"{apart} of {pairs} outlines lie behind the receivers' plane"

@@ -67,6 +67,14 @@ class Solids:
     of_outline: np.ndarray
     aside: float
 
+    def having(self, outlines: np.ndarray) -> Solids:
+        """Those that any of some outlines ``(l,)`` int belongs to."""
+        kept = np.unique(self.of_outline[outlines])
+        kept = kept[kept >= 0]
+        number = np.full(len(self.solids) + 1, -1)
+        number[kept] = np.arange(len(kept))
+        return Solids(tuple(self.solids[k] for k in kept), number[self.of_outline], self.aside)
+
     def unseen_backs(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """(o,) bool: outlines whose backs none of some receivers of one plane ``(r, 3)`` can see."""
         before = points + self.aside * normal

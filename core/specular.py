@@ -8,22 +8,21 @@ rounded. Chains go on until the product of reflectances falls below a cut-off; w
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from .facets import before
 from .globe import Hemisphere
 from .materials import Material
 from .outlines import Outlines
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
 from .sighting import Rays, Sighting, ray_sighting
+from .tree import Tree
 from .visibility import Partial, look
 
 DEEPEST_CHAIN = 200
 """No chain is followed further, even between perfect mirrors."""
-
-MANY_OUTLINES = 2_500
-"""Scenes of more outlines are looked at ray by ray."""
 
 _FEW_BEAMS = 5_000
 """Fewer are followed one by one, after two mirrors or panes, without regard to edges that cross them."""
@@ -167,6 +166,7 @@ class GroupSight:
     offset: float
     limits: ChainLimits
     _obstacles: dict = field(default_factory=dict)
+    _trees: dict = field(default_factory=dict)
 
     def sightings(self, points, checkpoint: Callable[[], None] = lambda: None) -> tuple[Iterator[Sighting], np.ndarray]:
         """Follow the beams of receivers in this plane.
@@ -190,14 +190,11 @@ class GroupSight:
         hemisphere = self.hemisphere
         beams = Beams.of(hemisphere)
         weights = np.broadcast_to(hemisphere.weights, (len(points), len(hemisphere.weights)))
+        none = beams.take(np.zeros(0, np.int64))
         horizon = HalfSpace(hemisphere.normal, self.offset)
         unseen_backs = self.outlines.unseen_backs(points, hemisphere.normal)
-        left = []
-        if len(self.outlines.vertices) > MANY_OUTLINES:
-            left.append(Rays.of(np.arange(len(points)), points, beams.directions, weights, 1.0, 0, 0))
-            stack = []
-        else:
-            stack = [(np.arange(len(points)), points, horizon, (), beams, weights, None, 1.0, 0, ())]
+        left: list[Rays] = []
+        stack = [(np.arange(len(points)), points, horizon, (), beams, weights, None, 1.0, 0, ())]
         while stack:
             rows, origin, horizon, beyond, beams, weights, partial, throughput, mirrors, chain = stack.pop()
             checkpoint()
@@ -213,6 +210,21 @@ class GroupSight:
                 weights > 0 if beyond else None,
                 unseen_backs[obstacles.outlines],
             )
+            facets, tree = self.outlines.facets, self._facets(chain, [horizon, *beyond])
+            if facets is not None and tree is not None:
+                past = beyond[0] if beyond else None
+                view, found = before(facets, tree, origin, beams, weights, view, obstacles.normals, past)
+                rays = Rays(
+                    rows[found.row],
+                    found.points,
+                    found.directions,
+                    found.weight,
+                    np.full(len(found.row), throughput),
+                    np.full(len(found.row), mirrors),
+                    np.full(len(found.row), len(chain)),
+                )
+                yield ray_sighting(self.outlines, rays, found.outline, mirrors, none)
+                left += self._after(rays, found.outline, found.distance, truncated)
             sighting = Sighting(
                 rows, origin, horizon.normal, beams, obstacles, view, weights, mirrors, self.outlines, partial
             )
@@ -243,24 +255,40 @@ class GroupSight:
             for kind in np.unique(kinds[kinds >= 0]):
                 mine = np.flatnonzero(kinds == kind)
                 yield ray_sighting(self.outlines, rays.take(mine), outline[mine], int(kind), none)
-            met = np.flatnonzero(outline >= 0)
-            place = rays.points[met] + distance[met, None] * rays.directions[met]
-            onward = []
-            for o in np.unique(outline[met]):
-                material = self.outlines.materials[o]
-                if not (material.is_specular or material.is_transparent):
-                    continue
-                here = np.flatnonzero(outline[met] == o)
-                here_rays = rays.take(met[here])
-                cosine = here_rays.directions @ self.outlines.normals[o]
-                onward += self._onward(here_rays, place[here], int(o), cosine < 0, cosine, truncated)
-            rays = Rays.joined(onward)
+            rays = Rays.joined(self._after(rays, outline, distance, truncated))
+
+    def _after(self, rays: Rays, outline, distance, truncated) -> list[Rays]:
+        """Rays that met outlines ``(n,)``, after the mirrors and panes among these."""
+        if not self.outlines.any_specular:
+            return []
+        met = np.flatnonzero(outline >= 0)
+        place = rays.points[met] + distance[met, None] * rays.directions[met]
+        onward = []
+        for o in np.unique(outline[met]):
+            material = self.outlines.materials[o]
+            if not (material.is_specular or material.is_transparent):
+                continue
+            here = np.flatnonzero(outline[met] == o)
+            here_rays = rays.take(met[here])
+            cosine = here_rays.directions @ self.outlines.normals[o]
+            onward += self._onward(here_rays, place[here], int(o), cosine < 0, cosine, truncated)
+        return onward
 
     def _cut(self, chain, half_spaces) -> Obstacles:
         if chain not in self._obstacles:
-            o = self.outlines
-            self._obstacles[chain] = obstacles_within(o.vertices, o.normals, o.offsets, half_spaces, o.tolerance)
+            o, some = self.outlines, self.outlines.projected
+            found = obstacles_within(o.vertices[some], o.normals[some], o.offsets[some], half_spaces, o.tolerance)
+            self._obstacles[chain] = replace(found, outlines=some[found.outlines])
         return self._obstacles[chain]
+
+    def _facets(self, chain, half_spaces) -> Tree | None:
+        """Of facets that may be seen; None where there are none."""
+        if self.outlines.facets is None:
+            return None
+        if chain not in self._trees:
+            normals, offsets = [half.normal for half in half_spaces], [half.offset for half in half_spaces]
+            self._trees[chain] = self.outlines.facets.rays.above(normals, offsets)
+        return None if self._trees[chain].is_empty else self._trees[chain]
 
     def _continue(self, s: Sighting, horizon: HalfSpace, throughput: float, chain, truncated, left: list) -> list:
         following = []

@@ -5,7 +5,8 @@ import pytest
 from builders import box_polygons, first_hits
 
 from luzespecular import polygons
-from luzespecular.rays import RayScene, _Tree
+from luzespecular.rays import RayScene
+from luzespecular.tree import Tree
 
 
 def ray_scene(outlines):
@@ -113,7 +114,7 @@ def test_empty_leaves_of_the_tree_are_never_gone_down(count):
     """Whatever the number of outlines leaves of room in the tree: rays meet few of its boxes."""
     rng = np.random.default_rng(count)
     corners = rng.uniform(-1, 1, (count, 1, 3)) + 0.01 * rng.normal(size=(count, 3, 3))
-    tree = _Tree.over(corners, 1e-9)
+    tree = Tree.over(corners, 1e-9)
     points, directions = rng.uniform(-1, 1, (200, 3)), rng.normal(size=(200, 3))
     met = []
     tree.search(points, directions, np.full(200, np.inf), lambda ray, outline: met.append(len(ray)))

@@ -286,7 +286,8 @@ def test_single_rays_see_what_shared_views_see(monkeypatch):
     scene = box(BLACK, (3, 3, 3), without=("north",), floor=mirror(0.8), west=luz.Material(diffuse_reflectance=0.5))
     scene.add("shelf", [[0, 2, 1.5], [3, 2, 1.5], [3, 3, 1.5], [0, 3, 1.5]], mirror(0.9))
     shared = prepare_coarse(scene, elements=100, patches=50, bands=60)
-    monkeypatch.setattr("luzespecular.specular.MANY_OUTLINES", 0)
+    for name in ("MANY_OUTLINES", "_FEWEST_LARGE", "_MOST_LARGE"):
+        monkeypatch.setattr(f"luzespecular.facets.{name}", 0)
     single = prepare_coarse(scene, elements=100, patches=50, bands=60)
     one, other = shared.solve(CLEAR), single.solve(CLEAR)
     for name in ("south", "ceiling", "east", "west", "floor"):

@@ -1,0 +1,250 @@
+"""Facets: outlines too many to be projected one by one. Single rays find them before what is seen beyond.
+
+Of a furnished room the few large outlines (walls, slabs, the edges of windows) decide most of what a receiver sees:
+these are projected, and parcels that their edges cross divided exactly. Whether anything of the furniture's many facets
+stands before them, rays tell: one for each parcel, or for each of a coarser globe.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from . import polygons
+from .arrays import dots
+from .globe import Globe
+from .projection import Beams, HalfSpace
+from .rays import RayScene
+from .tree import Tree
+from .views import OPEN, SHARED, View
+
+MANY_OUTLINES = 300
+"""Scenes of more outlines are looked at by rays for all but the largest."""
+
+_FEWEST_LARGE, _MOST_LARGE = 12, 60
+_LARGE = 5e-3
+"""Outlines of this share of the area of the scene's bounding box are large."""
+
+_FINENESS = ((3_000, 1), (20_000, 2), (None, 3))
+"""Up to so many facets, parcels of the rays' globe are as wide as so many of the scene's."""
+
+_LEAST_BANDS = 20
+
+_FEW_ROWS = 4
+"""Fewer receivers go down the tree at once: what they cannot meet is found out there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Facets:
+    """Outlines that rays find.
+
+    Attributes
+    ----------
+    large, small : (l,) and (s,) int
+        Outlines that are projected, and those that rays look for.
+    large_rays, rays : RayScene
+        Of either.
+    globe : Globe
+        One ray is shot for each of its parcels.
+    """
+
+    large: np.ndarray
+    small: np.ndarray
+    large_rays: RayScene
+    rays: RayScene
+    globe: Globe
+
+    @classmethod
+    def of(cls, vertices: np.ndarray, normals, offsets, tolerance: float, globe: Globe) -> Facets | None:
+        """Those of a scene's outlines ``(o, w, 3)``; None where they are few.
+
+        Parameters
+        ----------
+        vertices : (o, w, 3) float, padded
+        normals : (o, 3) float
+        offsets : (o,) float
+        tolerance : float [m]
+        globe : Globe
+            The scene's.
+        """
+        if len(vertices) <= MANY_OUTLINES:
+            return None
+        areas = polygons.areas(vertices)
+        x, y, z = np.ptp(vertices.reshape(-1, 3), axis=0)
+        many = int(np.count_nonzero(areas >= _LARGE * 2 * (x * y + y * z + z * x)))
+        order = np.argsort(-areas, kind="stable")
+        count = min(max(many, _FEWEST_LARGE), _MOST_LARGE)
+        large, small = np.sort(order[:count]), np.sort(order[count:])
+        times = next(times for most, times in _FINENESS if most is None or len(small) <= most)
+        bands = min(globe.bands, max(_LEAST_BANDS, globe.bands // times))
+        first, second = (RayScene(vertices[k], normals[k], offsets[k], tolerance) for k in (large, small))
+        return cls(
+            large,
+            small,
+            first,
+            second,
+            globe if bands == globe.bands else Globe.cut_at_horizon(bands),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Facets that show, ``n``: one for each ray that met one.
+
+    Attributes
+    ----------
+    row : (n,) int
+    outline : (n,) int
+    points, directions : (n, 3) float
+        Where the ray began, and its direction.
+    distance : (n,) float
+        From there [m].
+    weight : (n,) float
+        Of the beams that it stands for.
+    """
+
+    row: np.ndarray
+    outline: np.ndarray
+    points: np.ndarray
+    directions: np.ndarray
+    distance: np.ndarray
+    weight: np.ndarray
+
+
+def before(
+    facets: Facets,
+    among: Tree,
+    points: np.ndarray,
+    beams: Beams,
+    weights: np.ndarray,
+    view: View,
+    normals: np.ndarray,
+    past: HalfSpace | None,
+) -> tuple[View, Found]:
+    """Find facets that stand before what receivers see.
+
+    Parameters
+    ----------
+    facets : Facets
+    among : Tree
+        Of those that may show at all.
+    points : (r, 3) float
+    beams : Beams
+    weights : (r, k) float
+        0 where a beam did not come.
+    view : View
+        Of the large outlines.
+    normals : (o, 3) float
+        Of the obstacles in the view.
+    past : HalfSpace, optional
+        Rays begin at its border.
+
+    Returns
+    -------
+    view : View
+        Without what facets hide.
+    found : Found
+    """
+    tiles = _Tiles.of(facets.globe, beams)
+    start = np.zeros((len(points), len(tiles.starts)))
+    if past is not None:
+        start = (past.offset - points @ past.normal)[:, None] / (tiles.directions @ past.normal)
+    sent = np.logical_or.reduceat((weights > 0).take(tiles.order, axis=1), tiles.starts, axis=1)
+    if len(points) >= _FEW_ROWS:
+        sent &= among.may_meet(points, tiles.directions)
+    row, tile = np.nonzero(sent)
+    away, directions = start[row, tile], tiles.directions[tile]
+    origins = points[row] + away[:, None] * directions
+    middle, limit = (each[:, tiles.middle][row, tile] for each in (view.seen, view.nearest))
+    limit = limit - away
+    divided = np.flatnonzero(middle == SHARED)
+    limit[divided] = facets.large_rays.nearest(origins[divided], directions[divided])[1]
+    outline, distance = facets.rays.nearest(origins, directions, limit, among)
+    mine = np.flatnonzero(outline >= 0)
+    row, tile, outline, distance, away = row[mine], tile[mine], outline[mine], distance[mine], away[mine]
+    hit = np.full(start.shape, np.inf, np.float32)
+    hit[row, tile] = distance + away
+    # what is behind the facet in the tile's middle, is behind it in all of the tile
+    behind = np.full(start.shape, SHARED)
+    behind[row, tile] = middle[mine]
+    hidden = hit.take(tiles.of_beam, axis=1) < view.nearest
+    hidden |= view.seen == behind.take(tiles.of_beam, axis=1)
+    hidden &= (view.seen != SHARED) & (weights > 0)
+    part_hidden = _parts_hidden(view, hit[view.part_row, tiles.of_beam[view.part_beam]], normals)
+    weight = np.add.reduceat(np.where(hidden, weights, 0.0).take(tiles.order, axis=1), tiles.starts, axis=1)
+    lost = np.flatnonzero(part_hidden)
+    np.add.at(
+        weight,
+        (view.part_row[lost], tiles.of_beam[view.part_beam[lost]]),
+        weights[view.part_row[lost], view.part_beam[lost]] * view.part_share[lost],
+    )
+    kept = ~part_hidden
+    clear = replace(
+        view,
+        seen=np.where(hidden, SHARED, view.seen),
+        part_row=view.part_row[kept],
+        part_beam=view.part_beam[kept],
+        part_seen=view.part_seen[kept],
+        part_share=view.part_share[kept],
+        part_direction=view.part_direction[kept],
+    )
+    weight = weight[row, tile]
+    shows = np.flatnonzero(weight > 0)
+    row, mine = row[shows], mine[shows]
+    return clear, Found(
+        row, facets.small[outline[shows]], origins[mine], directions[mine], distance[shows], weight[shows]
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Tiles:
+    """Beams gathered in parcels of a coarser globe, ``t``.
+
+    Attributes
+    ----------
+    of_beam : (k,) int
+    order : (k,) int
+        Beams, tile by tile.
+    starts : (t,) int
+        Where each tile begins in that order.
+    middle : (t,) int
+        The beam nearest to each tile's middle.
+    directions : (t, 3) float
+        Of that beam.
+    """
+
+    of_beam: np.ndarray
+    order: np.ndarray
+    starts: np.ndarray
+    middle: np.ndarray
+    directions: np.ndarray
+
+    @classmethod
+    def of(cls, globe: Globe, beams: Beams) -> _Tiles:
+        every = np.arange(len(beams.columns))
+        if globe is beams.hemisphere.globe:
+            return cls(every, every, every, every, beams.directions)
+        parcel = globe.parcel_of(beams.hemisphere.directions[beams.columns])
+        order = np.argsort(parcel, kind="stable")
+        starts = np.flatnonzero(np.diff(parcel[order], prepend=-1))
+        of_beam = np.empty(len(order), np.int64)
+        of_beam[order] = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(order))))
+        sums = np.add.reduceat(beams.directions[order], starts, axis=0)
+        aside = dots(beams.directions, sums[of_beam])
+        middle = np.lexsort((-aside, of_beam))[starts]
+        return cls(of_beam, order, starts, middle, beams.directions[middle])
+
+
+def _parts_hidden(view: View, hit: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """(p,) bool: whether a facet at distances ``(p,)`` stands before parts of beams."""
+    some = np.flatnonzero(np.isfinite(hit))
+    hidden = np.zeros(len(hit), bool)
+    seen, towards = view.part_seen[some], view.part_direction[some]
+    away = np.full(len(some), np.inf)
+    met = np.flatnonzero(seen != OPEN)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lengths = view.heights[view.part_row[some[met]], seen[met]] / dots(towards[met], normals[seen[met]])
+    away[met] = np.where(lengths > 0, lengths * np.linalg.norm(towards[met], axis=1), np.inf)
+    hidden[some] = hit[some] < away
+    return hidden
