@@ -7,7 +7,7 @@ stands before them, rays tell: one for each parcel, or for each of a coarser glo
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from .globe import Globe
 from .projection import Beams, HalfSpace
 from .rays import RayScene
 from .tree import Tree
-from .views import OPEN, SHARED, View
+from .views import OPEN, SHARED, View, along
 
 MANY_OUTLINES = 300
 """Scenes of more outlines are looked at by rays for all but the largest."""
@@ -146,40 +146,9 @@ def before(
         Without what facets hide.
     found : Found
     """
-    tiles = _Tiles.of(facets.globe, beams)
-    start = np.zeros((len(points), len(tiles.starts)))
-    if past is not None:
-        start = (past.offset - points @ past.normal)[:, None] / (tiles.directions @ past.normal)
-    sent = np.logical_or.reduceat((weights > 0).take(tiles.order, axis=1), tiles.starts, axis=1)
-    if len(points) >= _FEW_ROWS:
-        sent &= among.may_meet(points, tiles.directions)
-    row, tile = np.nonzero(sent)
-    away, directions = start[row, tile], tiles.directions[tile]
-    origins = points[row] + away[:, None] * directions
-    middle, limit = (each[:, tiles.middle][row, tile] for each in (view.seen, view.nearest))
-    limit = limit - away
-    divided = np.flatnonzero(middle == SHARED)
-    limit[divided] = facets.large_rays.nearest(origins[divided], directions[divided])[1]
-    outline, distance = facets.rays.nearest(origins, directions, limit, among)
-    mine = np.flatnonzero(outline >= 0)
-    row, tile, outline, distance, away = row[mine], tile[mine], outline[mine], distance[mine], away[mine]
-    hit = np.full(start.shape, np.inf, np.float32)
-    hit[row, tile] = distance + away
-    # what is behind the facet in the tile's middle, is behind it in all of the tile
-    behind = np.full(start.shape, SHARED)
-    behind[row, tile] = middle[mine]
-    hidden = hit.take(tiles.of_beam, axis=1) < view.nearest
-    hidden |= view.seen == behind.take(tiles.of_beam, axis=1)
-    hidden &= (view.seen != SHARED) & (weights > 0)
-    part_hidden = _parts_hidden(view, hit[view.part_row, tiles.of_beam[view.part_beam]], normals)
-    weight = np.add.reduceat(np.where(hidden, weights, 0.0).take(tiles.order, axis=1), tiles.starts, axis=1)
-    lost = np.flatnonzero(part_hidden)
-    np.add.at(
-        weight,
-        (view.part_row[lost], tiles.of_beam[view.part_beam[lost]]),
-        weights[view.part_row[lost], view.part_beam[lost]] * view.part_share[lost],
-    )
-    kept = ~part_hidden
+    whole = (weights > 0) & (view.seen != SHARED)
+    hidden, by_tiles = _before_whole(facets, among, points, beams, weights, whole, view, past)
+    kept, by_parts = _before_parts(facets, among, points, weights, view, normals, past)
     clear = replace(
         view,
         seen=np.where(hidden, SHARED, view.seen),
@@ -189,12 +158,69 @@ def before(
         part_share=view.part_share[kept],
         part_direction=view.part_direction[kept],
     )
-    weight = weight[row, tile]
+    found = (np.concatenate([getattr(one, f.name) for one in (by_tiles, by_parts)]) for f in fields(Found))
+    return clear, Found(*found)
+
+
+def _before_whole(facets: Facets, among: Tree, points, beams: Beams, weights, whole, view: View, past):
+    """Which of the beams ``(r, k)`` that see one thing see a facet before it; and these facets."""
+    tiles = _Tiles.of(facets.globe, beams)
+    sent = np.logical_or.reduceat(whole.take(tiles.order, axis=1), tiles.starts, axis=1)
+    if len(points) >= _FEW_ROWS:
+        sent &= among.may_meet(points, tiles.directions)
+    row, tile = np.nonzero(sent)
+    directions = tiles.directions[tile]
+    away = _start(past, points[row], directions)
+    origins = points[row] + away[:, None] * directions
+    middle, limit = (each[row, tiles.middle[tile]] for each in (view.seen, view.nearest))
+    limit = limit - away
+    divided = np.flatnonzero(middle == SHARED)
+    limit[divided] = facets.large_rays.nearest(origins[divided], directions[divided])[1]
+    outline, distance = facets.rays.nearest(origins, directions, limit, among)
+    mine = np.flatnonzero(outline >= 0)
+    row, tile, distance = row[mine], tile[mine], distance[mine]
+    hit = np.full(sent.shape, np.inf, np.float32)
+    hit[row, tile] = distance + away[mine]
+    # what is behind the facet in the tile's middle, is behind it in all of the tile
+    behind = np.full(sent.shape, SHARED)
+    behind[row, tile] = middle[mine]
+    hidden = hit.take(tiles.of_beam, axis=1) < view.nearest
+    hidden |= view.seen == behind.take(tiles.of_beam, axis=1)
+    hidden &= whole
+    weight = np.add.reduceat(np.where(hidden, weights, 0.0).take(tiles.order, axis=1), tiles.starts, axis=1)[row, tile]
     shows = np.flatnonzero(weight > 0)
-    row, mine = row[shows], mine[shows]
-    return clear, Found(
-        row, facets.small[outline[shows]], origins[mine], directions[mine], distance[shows], weight[shows]
+    mine = mine[shows]
+    return hidden, Found(
+        row[shows], facets.small[outline[mine]], origins[mine], directions[mine], distance[shows], weight[shows]
     )
+
+
+def _before_parts(facets: Facets, among: Tree, points, weights, view: View, normals, past):
+    """Which parts of beams ``(p,)`` have no facet before them in their middle; and the facets before the others.
+
+    Each part is asked for itself: beside the edge of a large outline, facets often are what continues it.
+    """
+    row, seen = view.part_row, view.part_seen
+    length = np.linalg.norm(view.part_direction, axis=1)
+    directions = view.part_direction / length[:, None]
+    limit = np.full(len(row), np.inf)
+    met = np.flatnonzero(seen != OPEN)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        limit[met] = view.heights[row[met], seen[met]] / dots(directions[met], normals[seen[met]])
+    away = _start(past, points[row], directions)
+    origins = points[row] + away[:, None] * directions
+    outline, distance = facets.rays.nearest(origins, directions, np.where(limit > 0, limit, np.inf) - away, among)
+    weight = weights[row, view.part_beam] * view.part_share
+    kept = (outline < 0) | (weight <= 0)
+    mine = np.flatnonzero(~kept)
+    return kept, Found(
+        row[mine], facets.small[outline[mine]], origins[mine], directions[mine], distance[mine], weight[mine]
+    )
+
+
+def _start(past: HalfSpace | None, points, directions) -> np.ndarray:
+    """(n,) float: how far along each ray begins."""
+    return np.zeros(len(points)) if past is None else along(past, points, directions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,17 +260,3 @@ class _Tiles:
         aside = dots(beams.directions, sums[of_beam])
         middle = np.lexsort((-aside, of_beam))[starts]
         return cls(of_beam, order, starts, middle, beams.directions[middle])
-
-
-def _parts_hidden(view: View, hit: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """(p,) bool: whether a facet at distances ``(p,)`` stands before parts of beams."""
-    some = np.flatnonzero(np.isfinite(hit))
-    hidden = np.zeros(len(hit), bool)
-    seen, towards = view.part_seen[some], view.part_direction[some]
-    away = np.full(len(some), np.inf)
-    met = np.flatnonzero(seen != OPEN)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        lengths = view.heights[view.part_row[some[met]], seen[met]] / dots(towards[met], normals[seen[met]])
-    away[met] = np.where(lengths > 0, lengths * np.linalg.norm(towards[met], axis=1), np.inf)
-    hidden[some] = hit[some] < away
-    return hidden

@@ -7,9 +7,12 @@ it: that follows from the scene in a moment, and what the file holds is used onl
 from __future__ import annotations
 
 import json
+import struct
 import zipfile
+import zlib
 from dataclasses import asdict, fields
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
@@ -29,6 +32,12 @@ from .specular import ChainLimits, exact_mirrors
 from .stages import Stage
 from .transfer import Transfer
 from .writing import complete
+
+_DAMAGED = (
+    *(zipfile.BadZipFile, zlib.error, struct.error, EOFError, ValueError, KeyError, TypeError, OverflowError),
+    *(SyntaxError, TokenError, RuntimeError, MemoryError),
+)
+"""What NumPy and zipfile raise over bytes that they cannot make sense of, and `_array` over what does not fit."""
 
 FORMAT = 3
 """Raised with every change of what files hold or of how it is found."""
@@ -118,8 +127,7 @@ def load_transfer(path, scene: Scene, options: Options | None, threads: int) -> 
             return _rebuilt(scene, kept, known, header, content, threads)
     except TransferFileError:
         raise
-    except (zipfile.BadZipFile, EOFError, ValueError, KeyError, TypeError) as error:
-        # ValueError: what np.load says of what it cannot read, and _array of what does not fit
+    except _DAMAGED as error:
         raise TransferFileError(f"'{path}' is damaged or no saved transfer ({error}); {remedy}") from error
 
 
