@@ -3,7 +3,7 @@
 Invariance (moved, scaled, turned, split), degenerate geometry, energy, light, scale and precision. Exit status 1 where
 a situation does not come out as expected.
 
-    python benchmarks/stress.py                  # all but the long ones, some minutes
+    python benchmarks/stress.py                  # all but the long ones, some ten minutes
     python benchmarks/stress.py --long           # the long ones as well (millions of triangles, full resolution)
     python benchmarks/stress.py --only energy    # one family, or situations with this in their name
 

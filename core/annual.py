@@ -177,6 +177,8 @@ def count_hours(transfer: Transfer, block: Block, hours: np.ndarray, limits: Ite
 def without_dark(lights: Iterable[Daylight | None], hours) -> tuple[list[Daylight | None], np.ndarray]:
     """Lights that count, all dark ones as one, and the hours that each stands for (see `Transfer.annual`)."""
     given = checked_lights(lights)
+    if not given:
+        raise SceneError("annual() was given no lights; give one for each hour, None for the dark ones")
     counted = _checked_hours(hours, len(given))
     dark = np.array([light is None or light.horizontal_illuminance == 0 for light in given], bool)
     lit = np.flatnonzero(~dark & (counted > 0))

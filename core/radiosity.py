@@ -11,6 +11,9 @@ from .errors import SceneError
 _UNBOUNDED = 1 - 1e-9
 _MOST_STEPS = 400
 
+_EXHAUSTED = 1e-14
+"""Of a unit vector: what is less of the next direction is rounding, and there is none."""
+
 
 def by_cycles(factors, reflectance, initial, cycles: int, checkpoint: Callable[[], None] = lambda: None) -> np.ndarray:
     """Illuminance after a number of diffuse reflections, E_n = Σ_{k≤n} (K ρ)^k E_0.
@@ -146,7 +149,7 @@ def _gmres(apply, right, tolerance: float, checkpoint) -> np.ndarray:
         goal[0] = start
         weights = np.linalg.lstsq(h[: k + 2, : k + 1], goal, rcond=None)[0]
         left = float(np.linalg.norm(goal - h[: k + 2, : k + 1] @ weights))
-        if left <= target or h[k + 1, k] <= 1e-14 * start:
+        if left <= target or h[k + 1, k] <= _EXHAUSTED:
             break
         basis.append(w / h[k + 1, k])
     return x + np.stack(basis[: len(weights)], axis=1) @ weights

@@ -272,7 +272,10 @@ class _Path:
         if found is None:
             group, outlines = self.bright.groups[number], self.bright.outlines
             visible = self.clipped(group.polygons)
-            which = np.flatnonzero(polygons.areas(visible) > outlines.tolerance**2)
+            shown = polygons.areas(visible) > outlines.tolerance**2
+            if self.beyond is not None:
+                shown &= above(group.polygons, self.beyond, outlines.tolerance)  # not the mirror's own back
+            which = np.flatnonzero(shown)
             visible, blockers = visible[which], self.blockers
             if len(which):
                 blockers = blockers.joined(between(outlines, self.corners, visible, [group.plane, *self.limits]))

@@ -149,3 +149,11 @@ def test_unknown_surfaces_are_refused(transfer, day):
         year.spatial_daylight_autonomy("roof")
     with pytest.raises(luz.SceneError, match="Name a surface, one of: floor"):
         year.spatial_daylight_autonomy()
+
+
+def test_a_year_without_lights_is_refused():
+    scene = luz.Scene()
+    scene.add("plate", [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], luz.Material())
+    transfer = prepare_coarse(scene, bands=4)
+    with pytest.raises(luz.SceneError, match="no lights"):
+        transfer.annual([])

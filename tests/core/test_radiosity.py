@@ -65,6 +65,14 @@ def test_an_even_field_in_a_closed_room(reflectance):
     np.testing.assert_allclose(got, 100 / (1 - reflectance), rtol=1e-6)
 
 
+@pytest.mark.parametrize("times", [1e-100, 1e-30, 1e15, 1e30, 1e100])
+def test_light_of_any_size_settles_alike(times):
+    """What counts as rounding is measured by steps of unit length, not by the light."""
+    factors, reflectance, initial = system(12, 5, 0.97, 1.0)
+    one, many = (radiosity.until_settled(factors, reflectance, t * initial, 1e-9) for t in (1.0, times))
+    np.testing.assert_allclose(many / times, one, rtol=1e-12)
+
+
 def test_near_white_rooms_settle_in_few_steps():
     factors, area = closed_factors(200, 3)
     steps = []

@@ -225,6 +225,22 @@ def test_corner_of_two_mirrors():
     assert got == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_luminous_mirrors_own_back_does_not_show_in_it(seed):
+    """Between mirrors face to face it matters not whether they have, and light, their outer sides."""
+    turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    low, high = floor((-1, 1), (-1, 1), 0.0) @ turn.T, ceiling((-1, 1), (-1, 1), 1.3) @ turn.T
+    points = np.array([[0.2, 0.1, 0.0], [-0.6, 0.4, 0.7]]) @ turn.T
+    lux = []
+    for both in (False, True):
+        scene = luz.Scene()
+        for name, polygon in (("low", low), ("high", high)):
+            scene.add(name, polygon, luz.Material(specular_reflectance=0.6, exitance=400.0), two_sided=both)
+        lux.append(prepare_coarse(scene, elements=20, patches=5, bands=4).solve(DARK).at(points, turn[:, [2, 2]].T))
+    np.testing.assert_allclose(lux[1], lux[0], rtol=1e-3)  # twice the flux: what is too faint to look for is more
+
+
 def test_a_small_lamp_through_a_pane():
     glass = luz.Material(regular_transmittance=0.85, refractive_index=1.52)
     for x in (0.0, 1.0, 4.0):

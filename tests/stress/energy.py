@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from builders import DARK, box, box_polygons
-from situations import GLOBE, Outcome, Situation, all_of, near, refused, solved, told
+from situations import BALANCE, GLOBE, Outcome, Situation, all_of, near, refused, solved, told
 
 import luzespecular as luz
 
@@ -91,14 +91,16 @@ def lamp_beside_dim_room() -> Outcome:
     return near(floor(5e4), floor(5e-4), 1e-2)
 
 
-def luminous_mirrors() -> Outcome:
-    """A closed box of perfect mirrors that shine, with a black lid: all light ends there, or in chains cut off."""
+def luminous_mirrors(reflectance: float) -> Outcome:
+    """A closed box of mirrors that shine, with a black lid: all light ends there, in mirrors or in chains cut off."""
     scene = luz.Scene()
     for name, polygon in box_polygons((4, 4, 3)).items():
-        material = luz.Material() if name == "ceiling" else luz.Material(specular_reflectance=1.0, exitance=100.0)
+        material = (
+            luz.Material() if name == "ceiling" else luz.Material(specular_reflectance=reflectance, exitance=100.0)
+        )
         scene.add(name, polygon, material)
     balance = solved(scene, DARK, bands=8, elements=20, patches=5).balance
-    return near(balance.absorbed["ceiling"] + balance.truncated, balance.entering, 0.05)
+    return near(sum(balance.absorbed.values()) + balance.truncated, balance.entering, BALANCE)
 
 
 def white_well(height: float, opening: float = 1.0, mirrored=()) -> Outcome:
@@ -132,7 +134,8 @@ def situations() -> Iterator[Situation]:
     yield row("a deep well of ρ = 1", lambda: white_well(8.0))
     yield row("a box of ρ = 1 with a hole of 10 cm", lambda: white_well(1.0, 0.1))
     yield row("a well of white and perfect mirrors", lambda: white_well(2.0, mirrored=("west", "north")))
-    yield row("luminous perfect mirrors with a black lid", luminous_mirrors, True)
+    for reflectance in (0.9, 0.999, 1.0):
+        yield row(f"luminous mirrors of {reflectance:g} with a black lid", lambda r=reflectance: luminous_mirrors(r))
     yield row("a pipe of length 5 without loss", lambda: perfect_pipe(5))
     yield row("a pipe of length 20 without loss", lambda: perfect_pipe(20), True)
     for ratio in (1, 4.5, 20):

@@ -54,7 +54,7 @@ class Situation:
 
 def near(got, expected, relative: float, absolute: float = 0.0) -> Outcome:
     """Values within ``relative`` of the expected, or within ``absolute`` lux."""
-    got, expected = np.atleast_1d(np.asarray(got, float)), np.atleast_1d(np.asarray(expected, float))
+    got, expected = (values.ravel() for values in np.broadcast_arrays(np.atleast_1d(got), np.asarray(expected, float)))
     allowed = np.maximum(relative * np.abs(expected), absolute)
     excess = np.abs(got - expected) / np.where(allowed > 0, allowed, 1e-300)
     worst = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))

@@ -8,14 +8,23 @@ from dataclasses import replace
 import degenerate
 import drawing
 import energy
+import equilibrium
 import extent
+import glass
 import invariance
+import kept
 import known_answers
 import lights
 import precision
+import shapes
+import sides
+import year
 from situations import Situation
 
-ROOMS = (known_answers, invariance, degenerate, drawing, energy, lights, extent, precision)
+ROOMS = (
+    *(known_answers, invariance, degenerate, drawing, energy, lights, extent, precision),
+    *(equilibrium, glass, kept, shapes, sides, year),
+)
 ALIKE = (
     *("E01-scale1", "E01-scale2", "E02-translate0", "E02-translate1", "E02-translate2", "E03-rotz1", "E03-rotz2"),
     *("E03-rotz3", "E04-rot1", "E06", "E07", "E10", "E12", "E32-rho0.9999", "room 0.1 m", "room 100 m", "1000 m off"),
