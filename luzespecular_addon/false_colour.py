@@ -1,7 +1,8 @@
 """False colours in renders: a node group that colours by the shown values, and what a scene needs to render it.
 
 EEVEE and Cycles show what the viewport shows. The user's materials stay as they are: the view layers override them
-while *In Renders* is on. All that was switched is remembered, and switched back.
+while *In Renders* is on (EEVEE before Blender 5.0 knows no override: there the fine faces, work planes and legend alone
+have the colours). All that was switched is remembered, and switched back.
 """
 
 from __future__ import annotations
@@ -14,6 +15,9 @@ import numpy as np
 from . import colours, render_legend, results_object, work_planes, writeback
 
 NAME = "LuzEspecular False Colour"
+
+WITHOUT_OVERRIDE = "BLENDER_EEVEE_NEXT"
+"""The render engine that overrides no materials: EEVEE as it is called before Blender 5.0."""
 
 _STOPS = 32  # as many as Blender's colour ramp holds
 _LEAST = 1e-6
@@ -66,6 +70,15 @@ def update(scene: bpy.types.Scene, scale: colours.ColourScale) -> None:
     for element, colour in zip(elements, rgb, strict=True):
         element.color = (*colour, 1.0)
     render_legend.update(scene, scale, scene.luzespecular.display.legend_in_renders)
+    for mesh in _bare_meshes(scene):
+        if not mesh.materials:
+            mesh.materials.append(material)
+
+
+def _bare_meshes(scene: bpy.types.Scene) -> list[bpy.types.Mesh]:
+    """Return what carries the material itself, for engines that override none: our own meshes and work planes."""
+    found = [*results_object.all_of(scene), *work_planes.all_of(scene), render_legend.find(scene)]
+    return [object_.data for object_ in found if object_ is not None]
 
 
 def _meshes(scene: bpy.types.Scene):
@@ -125,6 +138,9 @@ def _restore(scene: bpy.types.Scene) -> None:
     view.view_transform, view.look = results.view_transform_before, results.look_before
     view.exposure, view.gamma = results.exposure_before, results.gamma_before
     material = results.false_colour
+    for mesh in _bare_meshes(scene):
+        if material is not None and list(mesh.materials) == [material]:
+            mesh.materials.clear()
     render_legend.remove(scene)
     results.overrides.clear()
     for name in ("renders", "false_colour"):

@@ -25,7 +25,7 @@ DRIVER = ROOT / "tests" / "gui" / "driver.py"
 SIZE = (1600, 1000)
 
 
-def run(blender: str, steps: Path, output: Path, archive: Path) -> bool:
+def run(blender: str, steps: Path, output: Path, archive: Path, size: tuple[int, int] = SIZE) -> bool:
     """Run one file of steps in a window of its own; tell whether all went well."""
     output.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="luzespecular ") as folder:
@@ -33,13 +33,18 @@ def run(blender: str, steps: Path, output: Path, archive: Path) -> bool:
         install = [blender, "--command", "extension", "install-file", "-r", "user_default", "-e", str(archive)]
         if subprocess.run(install, env=environment, check=False).returncode:
             return False
-        command = [blender, "--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE)]
+        command = [blender, "--enable-event-simulate", "--window-geometry", "0", "0", *map(str, size)]
         command += ["--python-exit-code", "3", "--python", str(DRIVER), "--", str(steps.resolve()), str(output)]
         if "DISPLAY" not in os.environ and "WAYLAND_DISPLAY" not in os.environ:
             if shutil.which("xvfb-run") is None:
                 raise SystemExit("There is no display, and no xvfb-run to make one: install xvfb")
-            command = ["xvfb-run", "-a", "-s", f"-screen 0 {SIZE[0]}x{SIZE[1]}x24", *command]
+            command = ["xvfb-run", "-a", "-s", f"-screen 0 {size[0]}x{size[1]}x24", *command]
         return subprocess.run(command, env=environment, check=False).returncode == 0
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, height = map(int, text.split("x"))
+    return width, height
 
 
 def main() -> int:
@@ -49,10 +54,12 @@ def main() -> int:
     parser.add_argument("--blender", default="blender", help="Blender's program (default: blender)")
     parser.add_argument("--archive", type=Path, help="an extension built before (default: build this folder's)")
     parser.add_argument("--output", type=Path, default=ROOT / "build" / "gui", help="folder for pictures")
+    parser.add_argument("--size", type=_size, default=SIZE, help="of the window in pixels (default: 1600x1000)")
     options = parser.parse_args()
     archive = options.archive or build_extension.build(ROOT / "build" / "gui", quiet=True)
     files = options.steps or sorted(DRIVER.parent.glob("steps_*.py"))
-    failed = [str(steps) for steps in files if not run(options.blender, steps, options.output.resolve(), archive)]
+    output, size = options.output.resolve(), options.size
+    failed = [str(steps) for steps in files if not run(options.blender, steps, output, archive, size)]
     for steps in failed:
         print(f"failed: {steps}", file=sys.stderr)
     return 1 if failed else 0

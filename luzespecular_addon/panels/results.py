@@ -7,7 +7,7 @@ from typing import ClassVar
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
-from .. import display, isolines, render_legend
+from .. import display, false_colour, isolines, render_legend
 from ..legend import label
 from ..translations import CONTEXT
 from .drawing import Sidebar, draw_notices, draw_wrapped
@@ -114,6 +114,15 @@ class LUZESPECULAR_PT_renders(_PartOfResults, bpy.types.Panel):
                 remark = iface_("The legend needs a perspective or an orthographic camera")
             if remark:
                 draw_wrapped(self.layout.column(align=True), remark, "INFO", context.region.width)
+        if (
+            settings.in_renders
+            and settings.view == "OWN"
+            and context.scene.render.engine == false_colour.WITHOUT_OVERRIDE
+        ):
+            remark = iface_(
+                "Before Blender 5.0 EEVEE renders the colours of fine faces alone: show these, or use Cycles"
+            )
+            draw_wrapped(self.layout.column(align=True), remark, "INFO", context.region.width)
         self.layout.operator("luzespecular.save_picture", icon="IMAGE_DATA")
 
 

@@ -268,6 +268,27 @@ def test_renders_are_set_up_and_put_back(addon, bpy, make, solved):
     assert data_blocks(bpy) == blocks
 
 
+def test_engines_that_override_no_material_have_the_colours_too(addon, bpy, make, solved):
+    """EEVEE before Blender 5.0; what it renders is seen in windows, since it needs a graphics driver."""
+    scene = bpy.context.scene
+    scene.camera = make.object("Camera", bpy.data.cameras.new("Camera"))
+    assert bpy.ops.luzespecular.add_work_plane() == {"FINISHED"}
+    bare, painted = bpy.context.object, make.square("My grid", material=make.material("Mine"))
+    painted.luzespecular.plane.enabled = True
+    assert bpy.ops.luzespecular.solve() == {"FINISHED"}
+    solved.display.in_renders = True
+    material = scene.luzespecular.results.false_colour
+    for object_ in (fine(addon, bpy), bare, addon.render_legend.find(scene)):
+        assert list(object_.data.materials) == [material], object_.name
+    solved.display.scale = "GREY"  # a new legend
+    assert list(addon.render_legend.find(scene).data.materials) == [material]
+    assert [m.name for m in painted.data.materials] == ["Mine"]
+    assert not bpy.data.objects["Floor"].data.materials
+    solved.display.in_renders = False
+    assert not fine(addon, bpy).data.materials and not bare.data.materials
+    assert [m.name for m in painted.data.materials] == ["Mine"]
+
+
 def test_the_node_group_has_the_colours_of_the_legend(addon, bpy, solved):
     solved.display.in_renders = True
     solved.display.scale, solved.display.scaling = "CIVIDIS", "LINEAR"

@@ -161,6 +161,9 @@ TEXTS = {
     "In the upper right corner of the picture": "No canto superior direito da imagem",
     "Size (%)": "Tamanho (%)",
     "Height of the legend, as a share of the picture's": "Altura da legenda, como parcela da altura da imagem",
+    "Before Blender 5.0 EEVEE renders the colours of fine faces alone: show these, or use Cycles": (
+        "Antes do Blender 5.0 o EEVEE só renderiza as cores das faces finas: mostre estas, ou use o Cycles"
+    ),
     "Renders need a camera: Add > Camera": "Renderizações precisam de uma câmera: Adicionar > Câmera",
     "The legend needs a perspective or an orthographic camera": (
         "A legenda precisa de uma câmera em perspectiva ou ortográfica"
