@@ -22,12 +22,17 @@ from .specular import ChainLimits
 _SHARE = 0.04
 _FEWEST, _MOST = 4, 400
 _TOGETHER = 200
+_FACETS = 100
+"""Facets that are looked from themselves, of those that share receivers."""
 
 OF_DIFFERENCE = 1.4
 """What about 95 of 100 errors are below, over the root mean square difference of the two globes."""
 
 OF_MERGING = 0.35
 """The same over what patches twice as wide change: errors fall with the square of their width."""
+
+OF_SPREAD = 2.0
+"""The same over the root mean square of what facets get more or less than the one whose receiver they share."""
 
 OF_DOUBT = 0.5
 """The same for interpolation, over the surprise of the nodes around."""
@@ -54,6 +59,27 @@ class Trial:
     targets: Targets
     cells: np.ndarray
     sky: np.ndarray
+    facets: Facets
+
+
+@dataclass(frozen=True, eq=False)
+class Facets:
+    """Some facets that share the receiver of another, and what they see more of than that.
+
+    Attributes
+    ----------
+    element : (f,) int
+    cells : (f, c) float32
+        Differences of form factors, as in `Trial`.
+    sky : (f, s) float32
+    sharing : (e,) bool
+        Elements that share a receiver.
+    """
+
+    element: np.ndarray
+    cells: np.ndarray
+    sky: np.ndarray
+    sharing: np.ndarray
 
 
 def make_trial(
@@ -94,7 +120,35 @@ def make_trial(
 
     chunks = chunks_of_receivers(nodes.points[some], nodes.sheet[some], geometry.planes, _TOGETHER)
     run_parallel(work, chunks, threads, lambda done: None)
-    return Trial(some, targets, cells, sky)
+    return Trial(some, targets, cells, sky, _look_from_facets(coarse, nodes, limits, threads))
+
+
+def _look_from_facets(geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: int) -> Facets:
+    """Look from some of the facets that share a receiver, and from that, on the same globe."""
+    weights, targets = nodes.weights, geometry.targets
+    single = np.flatnonzero(np.diff(weights.start) == 1)
+    node = weights.node[weights.start[single]]
+    others = (np.bincount(weights.node, minlength=len(nodes.points))[node] > 1) & (nodes.element[node] != single)
+    facets, node = single[others], node[others]
+    sharing = np.zeros(len(geometry.element_points), bool)
+    sharing[facets] = True
+    pick = np.unique(np.linspace(0, len(facets) - 1, min(len(facets), _FACETS)).astype(int))
+    cells = np.zeros((len(pick), targets.patches.count), np.float32)
+    sky = np.zeros((len(pick), targets.columns), np.float32)
+
+    def work(number: int, checkpoint) -> None:
+        facet, shared = facets[pick[number]], node[pick[number]]
+        for sign, point, of in (
+            (1.0, geometry.element_points[facet], facet),
+            (-1.0, nodes.points[shared], nodes.element[shared]),
+        ):
+            normal = geometry.element_normals[of]
+            found = gather(sight_of(geometry, limits, normal, float(normal @ point)), point[None], targets, checkpoint)
+            cells[number] += sign * found.patches[0]
+            sky[number] += sign * found.sky[0]
+
+    run_parallel(work, list(range(len(pick))), threads, lambda done: None)
+    return Facets(facets[pick], cells, sky, sharing)
 
 
 def _sample(sheet: np.ndarray) -> np.ndarray:
@@ -135,3 +189,23 @@ def relative_errors(
     known = np.bincount(mine, weights=squared, minlength=sheets)
     # few samples of a sheet tell little: they are weighed against all
     return np.sqrt((known + 2 * squared.mean()) / (count + 2))
+
+
+def spread_of_facets(facets: Facets, surface: np.ndarray, more: np.ndarray) -> np.ndarray:
+    """(e,) float: what facets that share receivers differ by, surface by surface; 0 for all others [lx].
+
+    Parameters
+    ----------
+    facets : Facets
+    surface : (e,) int
+        Of all elements.
+    more : (f,) float
+        What those that were looked from get more than the receivers that they share [lx].
+    """
+    if not len(more):
+        return np.zeros(len(surface))
+    count = np.bincount(surface[facets.element], minlength=surface.max() + 1)
+    known = np.bincount(surface[facets.element], weights=more**2, minlength=len(count))
+    # few samples of a surface tell little: they are weighed against all
+    apart = np.sqrt((known + 2 * float((more**2).mean())) / (count + 2))
+    return np.where(facets.sharing, OF_SPREAD * apart[surface], 0.0)

@@ -9,7 +9,7 @@ import numpy as np
 from . import polygons, radiosity
 from .daylight import Daylight
 from .errors import SceneError
-from .estimate import LEAST, OF_DOUBT, relative_errors
+from .estimate import LEAST, OF_DOUBT, relative_errors, spread_of_facets
 from .form_factors import trusted
 from .gather import Targets
 from .geometry import Geometry
@@ -410,7 +410,10 @@ def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field:
     total = sum(field.components.values())
     exact = field.components["sun_direct"] + field.components["sun_specular"] + field.components["emitted"]
     relative = sampled_errors(transfer, light, sky, field, merging=True) + OF_DOUBT * transfer.unsure
-    return relative * (total - exact) + LEAST * total
+    geometry, trial = transfer.geometry, transfer.trial
+    exitance = geometry.cell_means(geometry.from_patches(field.patch_exitance + field.patch_emitted))
+    more = np.pi * product(trial.facets.sky, sky_column(trial.targets, light)) + product(trial.facets.cells, exitance)
+    return relative * (total - exact) + LEAST * total + spread_of_facets(trial.facets, geometry.element_surface, more)
 
 
 def product(matrix: np.ndarray, vector: np.ndarray, exact: bool = False) -> np.ndarray:

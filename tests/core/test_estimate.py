@@ -182,7 +182,8 @@ def test_every_sheet_is_looked_from_again(transfers):
 
 
 def trial_of(nodes):
-    return Trial(np.array(nodes), None, np.zeros((len(nodes), 0)), np.zeros((len(nodes), 0)))
+    none = np.zeros((len(nodes), 0))
+    return Trial(np.array(nodes), None, none, none, None)
 
 
 def test_errors_of_sheets_by_their_differences():
@@ -206,3 +207,26 @@ def test_errors_without_samples_or_light():
     np.testing.assert_array_equal(relative_errors(trial_of([]), np.zeros(0, int), *[np.zeros(0)] * 3, 2), LEAST)
     got = relative_errors(trial_of([0, 1]), np.zeros(2, int), *[np.zeros(2)] * 3, 1)
     assert got.tolist() == [0]
+
+
+def test_facets_that_share_receivers_know_what_they_differ_by(monkeypatch):
+    """A ball of 320 facets with some 80 receivers, against one where each facet looks for itself."""
+    from test_convex import ball
+
+    from luzespecular import nodes
+
+    corners = np.concatenate([s.pieces for s in ball(2).surfaces.values()])[:, ::-1] * 0.5 + [1.5, 1.2, 1.0]
+    scene = box(WHITE, (3, 3, 3), without=("north",))
+    scene.add("ball", corners.reshape(-1, 3), WHITE, faces=np.arange(corners.size // 3).reshape(-1, 3))
+    light = luz.Daylight(sky=CLEAR)
+    own = prepare_coarse(scene, bands=12).solve(light)
+    monkeypatch.setattr(nodes, "MANY_FACETS", 200)
+    monkeypatch.setattr(nodes, "_SHARED", 80)
+    shared = prepare_coarse(scene, bands=12).solve(light)
+    mine = shared.faces_of("ball")
+    apart = np.abs(shared.illuminance - own.illuminance)[mine]
+    assert (apart <= shared.error[mine]).mean() >= 0.95
+    assert (apart <= own.error[mine]).mean() < 0.6, "which one that knows nothing of them would not say"
+    assert shared.error[mine].mean() < 3 * np.sqrt((apart**2).mean()), "and it is no empty promise"
+    floor = shared.faces_of("floor")
+    assert shared.error[floor].mean() < 1.5 * own.error[floor].mean()
