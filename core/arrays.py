@@ -14,6 +14,11 @@ def pick(matrix: np.ndarray, row, column) -> np.ndarray:
     return matrix[row, column]
 
 
+def onto(vectors: np.ndarray, axis) -> np.ndarray:
+    """(n,) inner products of vectors ``(n, 3)`` with one: BLAS would wake threads for it that then wait for work."""
+    return vectors[:, 0] * axis[0] + vectors[:, 1] * axis[1] + vectors[:, 2] * axis[2]
+
+
 def dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(n,) inner products of vectors ``(n, 3)``."""
     return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .arrays import dots, pick
+from .arrays import dots, onto, pick
 from .projection import Beams, Obstacles, coverage
 from .views import Eye
 
@@ -164,7 +164,8 @@ def find_crossings(seen, candidates: Candidates, heights, beams: Beams, obstacle
     covered, moment = coverage(candidates.place.astype(float), *candidates.across.astype(float))
     # exact for one edge, and near enough where edges meet at a corner
     share, edge_sum = np.ones(len(mine)), np.zeros((len(mine), 4), np.float32)
-    told = np.concatenate([normal, (normal @ _ASKEW)[:, None] ** 3], axis=1)
+    askew = onto(normal, _ASKEW)
+    told = np.concatenate([normal, (askew * askew * askew)[:, None]], axis=1)
     lone = edges.take(pair) == 1
     several = np.flatnonzero(~lone)
     lone = np.flatnonzero(lone)

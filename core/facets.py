@@ -147,8 +147,9 @@ def before(
     found : Found
     """
     whole = (weights > 0) & (view.seen != SHARED)
-    hidden, by_tiles = _before_whole(facets, among, points, beams, weights, whole, view, past)
-    kept, by_parts = _before_parts(facets, among, points, weights, view, normals, past)
+    tiles = _Tiles.of(facets.globe, beams)
+    hidden, by_tiles = _before_whole(facets, among, tiles, points, weights, whole, view, past)
+    kept, by_parts = _before_parts(facets, among, tiles, points, weights, view, normals, past)
     clear = replace(
         view,
         seen=np.where(hidden, SHARED, view.seen),
@@ -162,9 +163,8 @@ def before(
     return clear, Found(*found)
 
 
-def _before_whole(facets: Facets, among: Tree, points, beams: Beams, weights, whole, view: View, past):
+def _before_whole(facets: Facets, among: Tree, tiles: _Tiles, points, weights, whole, view: View, past):
     """Which of the beams ``(r, k)`` that see one thing see a facet before it; and these facets."""
-    tiles = _Tiles.of(facets.globe, beams)
     sent = np.logical_or.reduceat(whole.take(tiles.order, axis=1), tiles.starts, axis=1)
     if len(points) >= _FEW_ROWS:
         sent &= among.may_meet(points, tiles.directions)
@@ -195,14 +195,21 @@ def _before_whole(facets: Facets, among: Tree, points, beams: Beams, weights, wh
     )
 
 
-def _before_parts(facets: Facets, among: Tree, points, weights, view: View, normals, past):
-    """Which parts of beams ``(p,)`` have no facet before them in their middle; and the facets before the others.
+def _before_parts(facets: Facets, among: Tree, tiles: _Tiles, points, weights, view: View, normals, past):
+    """Which parts of beams ``(p,)`` have no facet before them; and the facets before the others.
 
-    Each part is asked for itself: beside the edge of a large outline, facets often are what continues it.
+    Parts are asked for themselves, one of those that see the same in a tile for all: beside the edge of a large
+    outline, facets often are what continues it.
     """
-    row, seen = view.part_row, view.part_seen
-    length = np.linalg.norm(view.part_direction, axis=1)
-    directions = view.part_direction / length[:, None]
+    weight = weights[view.part_row, view.part_beam] * view.part_share
+    kind = view.part_row * len(tiles.starts) + tiles.of_beam[view.part_beam]
+    kind = kind * (len(normals) + 1) + view.part_seen
+    order = np.lexsort((-weight, kind))
+    first = np.flatnonzero(np.diff(kind[order], prepend=kind.min(initial=0) - 1))
+    asked = order[first]
+    row, seen = view.part_row[asked], view.part_seen[asked]
+    towards = view.part_direction[asked]
+    directions = towards / np.linalg.norm(towards, axis=1, keepdims=True)
     limit = np.full(len(row), np.inf)
     met = np.flatnonzero(seen != OPEN)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -210,11 +217,12 @@ def _before_parts(facets: Facets, among: Tree, points, weights, view: View, norm
     away = _start(past, points[row], directions)
     origins = points[row] + away[:, None] * directions
     outline, distance = facets.rays.nearest(origins, directions, np.where(limit > 0, limit, np.inf) - away, among)
-    weight = weights[row, view.part_beam] * view.part_share
-    kept = (outline < 0) | (weight <= 0)
-    mine = np.flatnonzero(~kept)
+    every = np.add.reduceat(weight[order], first) if len(first) else weight
+    kept = np.ones(len(order), bool)
+    kept[order] = np.repeat(outline < 0, np.diff(np.append(first, len(order))))
+    mine = np.flatnonzero((outline >= 0) & (every > 0))
     return kept, Found(
-        row[mine], facets.small[outline[mine]], origins[mine], directions[mine], distance[mine], weight[mine]
+        row[mine], facets.small[outline[mine]], origins[mine], directions[mine], distance[mine], every[mine]
     )
 
 

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .arrays import onto
 from .errors import SceneError
 from .hemisphere import POLAR_BANDS, Hemisphere, direction_of
 
@@ -280,7 +281,7 @@ class Globe:
         """
         n = np.asarray(normal, float)
         n = n / np.linalg.norm(n)
-        cosine = self.directions @ n
+        cosine = onto(self.directions, n)
         reach = np.hypot(*self.half_widths.T) * 1.3
         parcels = np.flatnonzero(cosine > -reach)
         whole = self.whole

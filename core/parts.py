@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from . import lattice, overlaps
-from .arrays import dots, pick
+from .arrays import dots, onto, pick
 from .crossings import Candidates, Crossed, find_crossings, subtract_aligned
 from .projection import Beams, Obstacles
 from .views import OPEN, SHARED, Eye, View
@@ -170,5 +170,5 @@ def _limits(eye: Eye, row, background, obstacles: Obstacles) -> overlaps.Limits:
     height = np.where(background >= 0, eye.heights[row, background], np.inf)
     start, facing = np.zeros(len(row)), np.zeros(3)
     if eye.past is not None:
-        start, facing = (eye.past.offset - eye.points[row] @ eye.past.normal) * (1 - 1e-5), eye.past.normal
+        start, facing = (eye.past.offset - onto(eye.points[row], eye.past.normal)) * (1 - 1e-5), eye.past.normal
     return overlaps.Limits(start, np.broadcast_to(facing, (len(row), 3)), height, obstacles.normals[background])

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
-from .arrays import dots
+from .arrays import dots, onto
 from .tree import Tree
 
 _FEW = 48
@@ -252,7 +252,7 @@ class RayScene:
         real = np.isfinite(start[outline])
         for _ in range(2):  # pushing in at one edge may push out at the next
             for across, least in zip(inward[outline][real], start[outline][real], strict=True):
-                moved += np.maximum(least + margin - moved @ across, 0.0)[:, None] * across
+                moved += np.maximum(least + margin - onto(moved, across), 0.0)[:, None] * across
         return moved
 
     def _meet(self, ray, candidate, points, directions, outline, distance) -> None:

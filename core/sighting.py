@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from .arrays import dots, pick
+from .arrays import dots, onto, pick
 from .outlines import Outlines
 from .projection import Beams, HalfSpace, Obstacles, reflect
 from .rays import Flight
@@ -117,7 +117,7 @@ class Rays:
             directions[place[partial.row, partial.beam]] = partial.direction / np.linalg.norm(
                 partial.direction, axis=1, keepdims=True
             )
-        ahead = (past.offset - rays.points @ past.normal) / (directions @ past.normal)
+        ahead = (past.offset - onto(rays.points, past.normal)) / onto(directions, past.normal)
         return replace(rays, points=rays.points + ahead[:, None] * directions, directions=directions)
 
     @classmethod

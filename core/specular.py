@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from .arrays import onto
 from .facets import before
 from .globe import Hemisphere
 from .materials import Material
@@ -119,13 +120,13 @@ class _Arriving:
         row, beam = view.part_row[mine], np.searchsorted(columns, beams)
         weights[row, beam] = parts[mine]
         towards = view.part_direction[mine]
-        way = (view.heights[row, k] / (towards @ s.obstacles.normals[k]))[:, None] * towards
+        way = (view.heights[row, k] / onto(towards, s.obstacles.normals[k]))[:, None] * towards
         # centres are good to first order only: where edges meet, one may lie beside what it is the centre of
         places = outlines.rays.pulled_inside(
             int(s.obstacles.outlines[k]), s.points[row] + way, _WITHIN * np.linalg.norm(way, axis=1)
         )
         direction = places - s.points[row]
-        cosine = s.beams.directions[columns] @ s.obstacles.normals[k]
+        cosine = onto(s.beams.directions[columns], s.obstacles.normals[k])
         every = np.arange(len(view.seen))
         return cls(every, columns, weights, row, beam, direction, cosine, np.arange(len(columns)))
 
@@ -270,7 +271,7 @@ class GroupSight:
                 continue
             here = np.flatnonzero(outline[met] == o)
             here_rays = rays.take(met[here])
-            cosine = here_rays.directions @ self.outlines.normals[o]
+            cosine = onto(here_rays.directions, self.outlines.normals[o])
             onward += self._onward(here_rays, place[here], int(o), cosine < 0, cosine, truncated)
         return onward
 

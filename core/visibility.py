@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import polygons
+from .arrays import onto
 from .crossings import Candidates, settle_whole
 from .parts import settle_parts
 from .projection import Beams, HalfSpace, Obstacles, edge_planes
@@ -118,15 +119,13 @@ def look(
                 within[o] = columns
         else:
             whole = np.ones_like(distance, bool)
-        before = nearest[:, columns]
-        whole &= distance < before
-        whole &= distance > (start if past is None else start[:, columns])
-        if whole.any():
-            np.copyto(before, distance, where=whole)
-            nearest[:, columns] = before
-            now = seen[:, columns]
-            np.copyto(now, o, where=whole)
-            seen[:, columns] = now
+        # beam after beam, as they lie in memory
+        known = nearest.T.take(columns, axis=0)
+        shows = whole.T & (distance.T < known)
+        shows &= distance.T > (start.T if past is None else start.T.take(columns, axis=0))
+        if shows.any():
+            nearest.T[columns] = np.where(shows, distance.T, known)
+            seen.T[columns] = np.where(shows, np.int32(o), seen.T.take(columns, axis=0))
             possible[o] = columns
     if found:
         row, beam, obstacle, sine = (np.concatenate(x, axis=-1) for x in zip(*found, strict=True))
@@ -149,14 +148,14 @@ def _set_partial(distance, partial: Partial, columns, heights, normal) -> None:
     mine = np.flatnonzero(column >= 0)
     row = partial.row[mine]
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        away = heights[row] / (partial.direction[mine] @ normal)
+        away = heights[row] / onto(partial.direction[mine], normal)
     distance[row, column[mine]] = away
 
 
 def _distance_to(plane: HalfSpace, points: np.ndarray, directions: np.ndarray) -> np.ndarray:
     """(r, k) float32: distance along each beam to a plane, a little less so that what stands on the plane counts."""
     with np.errstate(divide="ignore", over="ignore"):
-        slope = (1.0 / (directions @ plane.normal)).astype(np.float32)
+        slope = (1.0 / onto(directions, plane.normal)).astype(np.float32)
     return np.multiply.outer(slope * np.float32(1 - 1e-5), (plane.offset - points @ plane.normal).astype(np.float32)).T
 
 
