@@ -187,7 +187,7 @@ def _draw_table(layout: bpy.types.UILayout, results: bpy.types.PropertyGroup) ->
     row = layout.row()
     # In our context, since Blender's own words for these are too long for a column.
     heads = (iface_("Min", CONTEXT), iface_("Mean", CONTEXT), iface_("Max", CONTEXT))
-    _draw_columns(row, iface_("Surface [lx]"), *heads)
+    _draw_columns(row, iface_("Total [lx]"), *heads)
     row.label(text="", icon="BLANK1")  # as wide as the list's scroll bar
     layout.template_list("LUZESPECULAR_UL_surfaces", "", results, "rows", results, "active_row", rows=5)
     if 0 <= results.active_row < len(results.rows):

@@ -11,7 +11,7 @@ TEXTS = {
     "Results": "Resultados",
     "What is shown, and the table of surfaces": "O que é mostrado, e a tabela das superfícies",
     "No results yet": "Ainda não há resultados",
-    "Surface [lx]": "Superfície [lx]",
+    "Total [lx]": "Total [lx]",
     "Min": "Mín",
     "Mean": "Média",
     "Max": "Máx",
