@@ -417,14 +417,14 @@ def _add_whole(out: np.ndarray, seen: Shapes, normal, mirrors: Sequence[Reflecti
 def _by_pieces(outlines: Outlines, blockers: Blockers, seen: Shapes, points, normal, mirrors) -> np.ndarray:
     """(r,) float: as `light_past`, where pieces need weights of their own: past panes, or by uneven mirrors."""
     for polygon, outline in zip(blockers.vertices, blockers.outline.tolist(), strict=True):
-        planes, edges, facing = _edge_cones(polygon[None] - points[:, None])
+        planes, edges, facing = edge_cones(polygon[None] - points[:, None])
         height = np.matmul(seen.shape.transpose(2, 1, 0), planes.transpose(0, 2, 1)[seen.row])
         reach = np.abs(seen.shape).max(axis=(0, 1))
         overlaps = ((height.max(axis=1) > 1e-12 * reach[:, None]) | ~edges[seen.row]).all(axis=1)
         overlaps &= facing[seen.row] != 0
         if overlaps.any():
             behind = _past_blocker(outlines, polygon, outline, seen.take(np.flatnonzero(overlaps)), planes, edges)
-            seen = _joined([seen.take(np.flatnonzero(~overlaps)), *behind])
+            seen = joined([seen.take(np.flatnonzero(~overlaps)), *behind])
         if not len(seen.row):
             break
     return _add_whole(np.zeros(len(points)), seen, normal, mirrors)
@@ -455,36 +455,18 @@ def _past_blocker(outlines: Outlines, polygon, outline: int, seen: Shapes, plane
     return kept
 
 
-def _joined(parts: list[Shapes]) -> Shapes:
+def joined(parts: list[Shapes]) -> Shapes:
     """All polygons in one."""
     parts = [p for p in parts if len(p.row)] or parts[:1]
     return Shapes(
         np.concatenate([p.row for p in parts]),
         np.concatenate([p.polygon for p in parts]),
-        polygons.joined([p.shape.transpose(2, 1, 0) for p in parts]).transpose(2, 1, 0),
+        np.ascontiguousarray(polygons.joined([p.shape.transpose(2, 1, 0) for p in parts]).transpose(2, 1, 0)),
         np.concatenate([p.weight for p in parts]),
     )
 
 
-def within_cones(shapes, windows) -> np.ndarray:
-    """Part of each polygon that is seen through a convex window, both relative to the eye.
-
-    Parameters
-    ----------
-    shapes : (r, v, 3) float, padded
-    windows : (r, w, 3) float, padded
-
-    Returns
-    -------
-    (r, u, 3) float, padded
-    """
-    planes, _, facing = _edge_cones(windows)
-    for edge in range(planes.shape[1]):
-        shapes = polygons.clip(shapes, planes[:, edge])
-    return np.where((facing != 0)[:, None, None], shapes, shapes[:, :1])
-
-
-def _edge_cones(windows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def edge_cones(windows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Planes through the eye and a window's edges, positive inside; which are edges; from which side it is seen."""
     planes = polygons.cross(windows, np.roll(windows, -1, axis=1))
     facing = np.einsum("rc,rc->r", polygons.newell_normal(windows), windows[:, 0])

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
-from .blockers import Blockers, Shapes, Standing, above, between, frame, has_area, light_past, within_cones
+from .blockers import Blockers, Shapes, Standing, above, between, edge_cones, frame, has_area, joined, light_past
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
@@ -342,9 +342,28 @@ class _Leg:
         if self.window is None or not len(row):
             shape = shapes.transpose(2, 1, 0).take(which, axis=2) - self.points.T.take(row, axis=1)[:, None]
             return Shapes(row, which, shape, weight)
-        shape = within_cones(shapes[which] - self.points[row][:, None], self.window[row])
-        some = np.flatnonzero(has_area(shape))
-        return Shapes(row[some], which[some], np.ascontiguousarray(shape[some].transpose(2, 1, 0)), weight[some])
+        planes, edges = self.cones
+        shape = shapes.transpose(2, 1, 0).take(which, axis=2) - self.points.T.take(row, axis=1)[:, None]
+        planes, edges = planes.take(row, axis=2), edges.take(row, axis=1)
+        height = planes[0, :, None] * shape[0]
+        height += planes[1, :, None] * shape[1]
+        height += planes[2, :, None] * shape[2]
+        beside = ((height.max(axis=1) <= 0) & edges).any(axis=0)
+        whole = (height.min(axis=1) >= 0).all(axis=0)
+        seen = Shapes(row, which, shape, weight)
+        cut = seen.take(np.flatnonzero(~beside & ~whole))
+        part = cut.shape.transpose(2, 1, 0)
+        for plane in planes.transpose(1, 2, 0):
+            part = polygons.clip(part, plane[~beside & ~whole])
+        some = np.flatnonzero(has_area(part))
+        clipped = Shapes(cut.row[some], cut.polygon[some], part[some].transpose(2, 1, 0), cut.weight[some])
+        return joined([seen.take(np.flatnonzero(whole & ~beside)), clipped])
+
+    @cached_property
+    def cones(self) -> tuple[np.ndarray, np.ndarray]:
+        """Planes through each eye and its window's edges (3, w, r), positive inside; and which are edges (w, r)."""
+        planes, edges, facing = edge_cones(self.window)
+        return np.ascontiguousarray(planes.transpose(2, 1, 0)), np.ascontiguousarray((edges & (facing != 0)[:, None]).T)
 
 
 @dataclass(frozen=True, eq=False)
