@@ -140,9 +140,14 @@ class Bright:
         return self.faint * even_illuminance(self.outlines, self.sources)
 
     @cached_property
-    def mirrors(self) -> list[int]:
-        """Outlines that mirror: one in the receivers' own plane too, since it comes into view by way of others."""
-        return [o for o, material in enumerate(self.outlines.materials) if material.is_specular]
+    def mirrors(self) -> dict[int, float]:
+        """Outlines that mirror, and their largest reflectance.
+
+        One in the receivers' own plane too, since it comes into view by way of others.
+        """
+        cosines = np.linspace(0.05, 1.0, 8)
+        every = enumerate(self.outlines.materials)
+        return {o: float(material.specular_at(cosines).max()) for o, material in every if material.is_specular}
 
     @cached_property
     def brightest(self) -> float:
@@ -253,6 +258,7 @@ class _Path:
     throughput: float
     depth: int
     _sources: dict[int, tuple] = field(default_factory=dict)
+    _apertures: dict[int, np.ndarray] = field(default_factory=dict)
     _mirrored: dict[tuple[int, float], _Path] = field(default_factory=dict)
 
     @property
@@ -282,14 +288,17 @@ class _Path:
             found = self._sources[number] = which, Standing.of(blockers, visible, self.corners, outlines.tolerance)
         return found
 
-    def aperture(self, mirror: int) -> np.ndarray | None:
-        """(1, u, 3) float: what of a mirror may be seen; None where nothing of it."""
-        outlines = self.bright.outlines
-        outline = outlines.vertices[mirror][None]
-        if self.beyond is not None and not above(outline, self.beyond, outlines.tolerance)[0]:
-            return None  # the mirror just used, or one in its plane
-        seen = self.clipped(outline)
-        return seen if polygons.areas(seen)[0] > outlines.tolerance**2 else None
+    def aperture(self, mirror: int) -> np.ndarray:
+        """(n, u, 3) float: what of a mirror may be seen, one polygon or none."""
+        found = self._apertures.get(mirror)
+        if found is None:
+            outlines = self.bright.outlines
+            found = outlines.vertices[mirror][None]
+            if self.beyond is not None and not above(found, self.beyond, outlines.tolerance)[0]:
+                found = found[:0]  # the mirror just used, or one in its plane
+            found = self.clipped(found)
+            found = self._apertures[mirror] = found[polygons.areas(found) > outlines.tolerance**2]
+        return found
 
     def mirrored(self, mirror: int, ahead: HalfSpace, aperture, throughput: float) -> _Path:
         """The way on by one more mirror."""
@@ -418,9 +427,11 @@ class SourceView:
     def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, checkpoint, total: np.ndarray) -> None:
         outlines, tolerance = self.bright.outlines, self.bright.outlines.tolerance
         material = outlines.materials[mirror]
-        throughput = path.throughput * float(material.specular_at(np.linspace(0.05, 1.0, 8)).max())
-        aperture = None if throughput < self.bright.limits.cutoff else path.aperture(mirror)
-        if aperture is None:
+        throughput = path.throughput * self.bright.mirrors[mirror]
+        if throughput < self.bright.limits.cutoff:
+            return
+        aperture = path.aperture(mirror)
+        if not len(aperture):
             return
         normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
         both = outlines.two_sided[mirror] or material.reflects_both_sides
