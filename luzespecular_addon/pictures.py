@@ -18,6 +18,7 @@ from . import colours, display, render_legend, writeback
 
 SIZE = (1280, 960)
 _SAMPLES = 8
+_BESIDE_LEGEND = 1.2  # width of the picture over what is left beside the legend
 _BACKGROUND = (0.16, 0.16, 0.16)  # sRGB
 
 
@@ -66,7 +67,7 @@ def _stage(scene: bpy.types.Scene, size: tuple[int, int]) -> Iterator[bpy.types.
                 copy.matrix_world = object_.matrix_world
                 stage.collection.objects.link(copy)
             points += [object_.matrix_world @ Vector(corner) for corner in object_.bound_box]
-        stage.camera = _camera(stage, scene.camera, points)
+        stage.camera = _camera(stage, scene.camera, points, scene.luzespecular.display)
         if scene.luzespecular.display.legend_in_renders:
             _add_legend(stage, scene, material)
         yield stage
@@ -94,8 +95,13 @@ def _set_up(stage: bpy.types.Scene, size: tuple[int, int]) -> None:
     stage.world.color = colours.srgb_to_linear(_BACKGROUND)
 
 
-def _camera(stage: bpy.types.Scene, given: bpy.types.Object | None, points: list[Vector]) -> bpy.types.Object:
-    """A copy of the scene's camera, or one that sees all points from the south-west above."""
+def _camera(
+    stage: bpy.types.Scene,
+    given: bpy.types.Object | None,
+    points: list[Vector],
+    settings: bpy.types.PropertyGroup,
+) -> bpy.types.Object:
+    """A copy of the scene's camera, or one that sees all points from the south-west above, beside the legend."""
     if given is not None and given.type == "CAMERA":
         camera = bpy.data.objects.new("Camera", given.data.copy())
         camera.matrix_world = given.matrix_world
@@ -103,12 +109,19 @@ def _camera(stage: bpy.types.Scene, given: bpy.types.Object | None, points: list
         camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
         way = Vector((-0.55, -0.7, 0.55)).normalized()
         camera.rotation_euler = way.to_track_quat("Z", "Y").to_euler()
-        camera.data.shift_x, camera.data.shift_y = -0.05, 0.04  # room for heading and legend
+        lens = camera.data.lens
+        if settings.legend_in_renders:
+            camera.data.lens *= _BESIDE_LEGEND  # for the fit alone
         stage.collection.objects.link(camera)
         stage.view_layers[0].update()
         place, _ = camera.camera_fit_coords(stage.view_layers[0].depsgraph, [x for point in points for x in point])
         distance = max((place - point).length for point in points)
         camera.location = place + 0.08 * distance * way
+        if settings.legend_in_renders:
+            camera.data.lens = lens
+            camera.data.shift_x = (
+                0.5 * (1.0 / _BESIDE_LEGEND - 1.0) * (1.0 if "LEFT" in settings.legend_corner else -1.0)
+            )
         camera.data.clip_start, camera.data.clip_end = 1e-3 * distance, 3.0 * distance
         stage.view_layers[0].update()
         return camera
