@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from .convex import ConvexRoom
-from .enclosures import Enclosures
+from .enclosures import Enclosures, keep_apart
 from .errors import SceneError, TransferFileError
 from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
 from .fingerprint import Fingerprint
@@ -227,6 +227,8 @@ def _prepared(
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         first = nodes.weights.node[nodes.weights.start[:-1]]
         enclosures = Enclosures.of(patch_factors, geometry.patch_areas, gathered.form_factors, first)
+        if keep_apart(geometry, nodes, enclosures, gathered.form_factors):
+            patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         conservation = Conservation.of(geometry, nodes, gathered, enclosures)
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
         exchange = Exchange(patch_factors, spread, conservation.missing, enclosures.of_patches)

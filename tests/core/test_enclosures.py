@@ -5,7 +5,8 @@ import pytest
 from builders import BLACK, DARK, box_polygons, prepare_coarse
 
 import luzespecular as luz
-from luzespecular.enclosures import APART, enclosed
+from luzespecular import preparation
+from luzespecular.enclosures import APART, Enclosures, enclosed, keep_apart
 
 GREY = luz.Material(diffuse_reflectance=0.5)
 
@@ -107,3 +108,75 @@ def test_they_go_with_a_saved_transfer(tmp_path):
         patch.setattr(geometry, "PATCHES", 100)
         loaded = luz.load(path, scene)
     np.testing.assert_array_equal(loaded.solve(DARK).illuminance, transfer.solve(DARK).illuminance)
+
+
+def parted(width, **filled):
+    """Two boxes a little apart, with square holes of this width in the walls that face each other."""
+    scene = luz.Scene()
+    low, high = 0.4 - width / 2, 0.4 + width / 2
+    square = np.array([[0.0, low, low], [0.0, high, low], [0.0, high, high], [0.0, low, high]])
+    for title, x, faced in (("bright", 0.0, "east"), ("dim", 1.02, "west")):
+        for name, polygon in box_polygons((1, 1, 1), (x, 0, 0)).items():
+            glow = 5e4 if (title, name) == ("bright", "ceiling") else 0.0
+            if width and name == faced:  # a ring, by a bridge
+                hole = square[::-1] if name == "west" else square
+                hole = np.add(hole, [polygon[0, 0], 0, 0])
+                first = int(np.argmin(np.linalg.norm(hole - polygon[0], axis=1)))
+                polygon = np.concatenate([polygon, polygon[:1], np.roll(hole, -first, axis=0), hole[[first]]])
+            scene.add(f"{title} {name}", polygon, luz.Material(diffuse_reflectance=0.5, exitance=glow))
+    for name, material in filled.items():
+        scene.add(name, np.add(square, [1.01, 0, 0]), material)
+    return scene
+
+
+def dim_lux(scene, apart=True, **options):
+    with pytest.MonkeyPatch.context() as patch:
+        if not apart:
+            patch.setattr(preparation, "keep_apart", lambda *_: None)
+        result = prepare_coarse(scene, **{"elements": 400, "patches": 200, "bands": 30, **options}).solve(DARK)
+    names = [f"dim {name}" for name in ("floor", "ceiling", "south", "north", "east")]
+    return np.concatenate([result.illuminance[result.faces_of(name)] for name in names]), result
+
+
+def test_nothing_leaks_into_what_is_closed_off():
+    """Boxes that stand apart, where edges of both cross many beams."""
+    for gap in (0.5, 0.03):
+        scene = rooms(5e4, 0.0, 1 + gap)
+        leaked, result = dim_lux(scene)
+        assert result.transfer.conservation.enclosures.count == 2
+        assert not leaked.any()
+        sums = result.transfer.form_factors.sum(axis=1, dtype=float) + result.transfer.unlit
+        np.testing.assert_allclose(sums, 1, atol=3e-6)
+        assert dim_lux(scene, apart=False)[0].max() > 0.1, "which else some nodes would see"
+
+
+@pytest.mark.parametrize(("width", "pane", "sealed"), [(0.03, 0, False), (0.03, 0.9, False), (0, 0, True)])
+def test_light_through_a_small_hole_or_pane_stays(width, pane, sealed):
+    scene = parted(width, **({"pane": luz.Material(regular_transmittance=pane)} if pane else {}))
+    transfer = prepare_coarse(scene, elements=400, patches=200, bands=30)
+    geometry, nodes = transfer.geometry, transfer.nodes
+    room = (geometry.element_points[:, 0] > 0).astype(np.int64)  # from the middle between both
+    of_patches = np.zeros(geometry.targets.patches.count, np.int64)
+    mine = geometry.targets.patches.of_element >= 0
+    of_patches[geometry.targets.patches.of_element[mine]] = room[mine]
+    parts = Enclosures(2, of_patches, room[nodes.element], room)
+    factors = transfer.form_factors.copy()
+    other = parts.of_nodes[:, None] != of_patches
+    factors[np.argmax(other.any(axis=1)), np.argmax(other[np.argmax(other.any(axis=1))])] += 1e-4  # a leak
+    before = factors.copy()
+    assert keep_apart(geometry, nodes, parts, factors) == sealed
+    if sealed:
+        assert not factors[other].any()
+        np.testing.assert_allclose(factors.sum(axis=1), before.sum(axis=1), rtol=1e-5)
+    else:
+        seen = (before > 0) & other
+        assert np.count_nonzero(seen) > 100
+        np.testing.assert_array_equal(factors, before)
+
+
+def test_mirrors_leave_all_as_it_is():
+    """Ways by these are not straight."""
+    scene = rooms(5e4, 0.0)
+    mirror = [[0.3, 0.1, 0.2], [0.7, 0.1, 0.2], [0.7, 0.1, 0.8], [0.3, 0.1, 0.8]]
+    scene.add("mirror", mirror, luz.Material(specular_reflectance=0.8))
+    np.testing.assert_array_equal(dim_lux(scene)[0], dim_lux(scene, apart=False)[0])
