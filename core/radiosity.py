@@ -39,7 +39,12 @@ def by_cycles(factors, reflectance, initial, cycles: int, checkpoint: Callable[[
 
 
 def until_settled(
-    factors, reflectance, initial, tolerance: float, checkpoint: Callable[[], None] = lambda: None
+    factors,
+    reflectance,
+    initial,
+    tolerance: float,
+    checkpoint: Callable[[], None] = lambda: None,
+    gain: float | None = None,
 ) -> np.ndarray:
     """Illuminance after all diffuse reflections: solves (I − K ρ) E = E_0.
 
@@ -53,6 +58,8 @@ def until_settled(
     tolerance : float
         The change left to come, relative to the mean illuminance.
     checkpoint : callable
+    gain : float, optional
+        `largest_gain` where it is known.
 
     Returns
     -------
@@ -66,7 +73,7 @@ def until_settled(
     scale = float(np.abs(initial).mean())
     if not len(initial) or scale == 0 or not reflectance.any():
         return initial.copy()
-    gain = _bounded_gain(factors, reflectance)
+    gain = _bounded(largest_gain(factors, reflectance) if gain is None else gain)
     # an error e of the residual grows to at most e / (1 − gain) in the illuminance
     return _gmres(lambda e: e - factors @ (reflectance * e), initial, tolerance * (1 - gain), checkpoint)
 
@@ -89,7 +96,7 @@ def all_settled(exchange, reflectance: np.ndarray, initial: np.ndarray) -> np.nd
     SceneError
         Where light multiplies without end.
     """
-    _bounded_gain(exchange, reflectance)
+    _bounded(largest_gain(exchange, reflectance))
     matrix = exchange.factors.astype(np.float32)
     made_up = np.outer(exchange.spread, exchange.missing).astype(np.float32)
     made_up[exchange.part[:, None] != exchange.part] = 0.0
@@ -99,9 +106,8 @@ def all_settled(exchange, reflectance: np.ndarray, initial: np.ndarray) -> np.nd
     return np.linalg.solve(matrix, initial)
 
 
-def _bounded_gain(factors, reflectance) -> float:
-    """`largest_gain`, where light does not multiply without end; else SceneError."""
-    gain = largest_gain(factors, reflectance)
+def _bounded(gain: float) -> float:
+    """A gain with which light does not multiply without end; else SceneError."""
     if gain >= _UNBOUNDED:
         raise SceneError(
             "Light multiplies without end: a closed scene of diffuse reflectance 1 has no steady state; "

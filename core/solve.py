@@ -227,7 +227,9 @@ def interreflect(
         recorder.report(0.8, "interreflection")
 
     if cycles is None:
-        settled = radiosity.until_settled(transfer.exchange, reflectance, smooth + once, tolerance, checkpoint)
+        settled = radiosity.until_settled(
+            transfer.exchange, reflectance, smooth + once, tolerance, checkpoint, transfer.gain
+        )
     else:
         settled = _cycles_after_first(transfer.exchange, reflectance, smooth, once, cycles, checkpoint)
     exitance = reflectance * settled

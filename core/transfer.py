@@ -115,6 +115,14 @@ class Transfer:
         return ConvexRoom.around(self.geometry, self.geometry.cells.patches) if self.unhidden else None
 
     @cached_property
+    def gain(self) -> float:
+        """Upper estimate of the share of the light that survives one cycle between patches."""
+        from .radiosity import largest_gain
+        from .solve import patch_properties
+
+        return largest_gain(self.exchange, patch_properties(self.geometry)[0])
+
+    @cached_property
     def spread(self) -> np.ndarray:
         """(e,) float: `Conservation.spread` on the elements."""
         return self.on_elements(self.conservation.spread)
