@@ -18,7 +18,7 @@ from .result import checked_points
 from .stages import Progress, Recorder, Stage
 from .transfer import Transfer
 
-_BLOCK_BYTES = 64e6
+_BLOCK_BYTES = 16e6
 _LIGHTS = 64
 _SKY_STEP = 1.5
 """Degrees between the places that tell a parcel's mean luminance: lux within 2e-5 mostly, and 2e-4 everywhere."""

@@ -144,9 +144,7 @@ def find_coefficients(
 
     def follow(one: int, checkpoint: Callable[[], None]) -> None:
         sunlight = trace_sun(geometry.outlines, suns[one], 1.0, transfer.limits.cutoff, checkpoint)
-        direct, by_mirrors = sunlight.on_elements(
-            geometry.fracture.elements, geometry.lit_side, geometry.planes.outline_sheet
-        )
+        direct, by_mirrors = sunlight.on_elements(geometry.triangles, geometry.planes.outline_sheet)
         on_patches[one] = means_over_patches(geometry, direct + by_mirrors)
         lumens[one] = stays.elements @ (direct + by_mirrors)
         if places is None:

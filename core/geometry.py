@@ -22,6 +22,7 @@ from .planes import Planes
 from .scene import Scene
 from .solids import find_solids
 from .specular import ChainLimits, GroupSight
+from .sunlight import Triangles
 
 PATCHES = 1_000
 """Patches that exitance is resolved in, about; runs of cells get more where light is uneven."""
@@ -99,6 +100,11 @@ class Geometry:
     def lit_side(self) -> np.ndarray:
         """(e,) int: the side whose light each element gets."""
         return self.planes.stands_for[self.fracture.element_sheet]
+
+    @cached_property
+    def triangles(self) -> Triangles:
+        """The elements by the side whose light they get."""
+        return Triangles(self.fracture.elements, self.lit_side, int(self.planes.outline_sheet.max(initial=-1)) + 1)
 
     @cached_property
     def areas(self) -> np.ndarray:

@@ -21,7 +21,7 @@ from .projection import HalfSpace
 from .screens import Pieces, Screens
 from .specular import DEEPEST_CHAIN
 from .sun import Sun
-from .sunlight import Sunlight, trace_sun, wide
+from .sunlight import Sunlight, Triangles, trace_sun, wide
 
 _NARROW = 0.7
 """Faces up to this many penumbrae wide have the disc clipped at their points; wider ones are clipped themselves."""
@@ -191,7 +191,7 @@ def trace_disc(
         sun.normal_illuminance,
         direct,
         specular,
-        np.add(*sharp.on_elements(elements, element_sheet, outline_sheet)),
+        np.add(*sharp.on_elements(Triangles(elements, element_sheet, int(outline_sheet.max()) + 1), outline_sheet)),
     )
 
 

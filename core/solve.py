@@ -162,7 +162,7 @@ def follow_sun(geometry: Geometry, sun, cutoff: float, checkpoint) -> tuple[Sunl
         sunlight = trace_disc(outlines, sun, cuts.elements, geometry.lit_side, outline_sheet, cutoff, checkpoint)
     else:
         sunlight = trace_sun(outlines, np.asarray(sun.direction), sun.normal_illuminance, cutoff, checkpoint)
-    return sunlight, sunlight.on_elements(cuts.elements, geometry.lit_side, outline_sheet)
+    return sunlight, sunlight.on_elements(geometry.triangles, outline_sheet)
 
 
 def sky_column(targets: Targets, light: Daylight) -> np.ndarray:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -81,23 +82,20 @@ class Sunlight:
     patches: list[SunPatch]
     truncated: float
 
-    def on_elements(self, elements, element_sheet, outline_sheet) -> tuple[np.ndarray, np.ndarray]:
+    def on_elements(self, elements: Triangles, outline_sheet) -> tuple[np.ndarray, np.ndarray]:
         """Means over elements of what comes straight and by mirrors.
 
         Parameters
         ----------
-        elements : (e, 3, 3) float
-        element_sheet : (e,) int, plus the number of sheets for backs
+        elements : Triangles
         outline_sheet : (o,) int
 
         Returns
         -------
         direct, specular : (e,) float [lx]
         """
-        sheets = int(outline_sheet.max()) + 1
         direct, specular = (
-            light_elements(self.patches, elements, element_sheet, outline_sheet, sheets, by_mirrors)
-            for by_mirrors in (False, True)
+            light_elements(self.patches, elements, outline_sheet, by_mirrors) for by_mirrors in (False, True)
         )
         return direct, specular
 
@@ -198,7 +196,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
             region = region[wide(region, tolerance)]
             if not len(region):
                 continue
-        pieces = [(region, np.ones(len(region)))]
+        pieces = region, np.ones(len(region))
         normal, plane = outlines.normals[present[k]], float(outlines.offsets[present[k]])
         upstream = -normal * np.sign(cosine[k])
         height = vertices @ upstream - plane * -np.sign(cosine[k])
@@ -207,56 +205,63 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
             (height > tolerance).any(axis=1) & (np.abs(cosine) > 1e-12) & (spread.max(axis=2) > tolerance).all(axis=1)
         )
         meets[k] = False
+        some = np.flatnonzero(meets)
+        around, at = prism(region, beam.travel, cosine[k : k + 1])
+        meets[some] = ((vertices[some] @ around[0].T - at[0]).max(axis=1) > tolerance).all(axis=1)
         for b in foremost[meets[foremost]]:
-            pieces = _shadow(
-                outlines, pieces, vertices[b], int(present[b]), upstream, -plane * np.sign(cosine[k]), beam, cosine[b]
-            )
-            if not pieces:
+            nearer, around, at = vertices[b], walls[b], wall_offsets[b]
+            if height[b].min() < 0:
+                nearer = polygons.clip(nearer[None], upstream, -plane * np.sign(cosine[k]))
+                (nearer,), (around,), (at,) = nearer, *prism(nearer, beam.travel, cosine[b : b + 1])
+            pieces = _shadow(outlines, pieces, nearer, (around, at), int(present[b]), beam.travel)
+            if not len(pieces[0]):
                 break
-        for polygon, factor in ((p, f) for batch, factors in pieces for p, f in zip(batch, factors, strict=True)):
+        for polygon, factor in zip(*pieces, strict=True):
             if wide(polygon, tolerance):
                 lux = beam.normal_illuminance * abs(float(cosine[k])) * float(factor)
                 found.append(SunPatch(int(present[k]), bool(cosine[k] < 0), polygon, lux, beam.order))
     return found
 
 
-def _shadow(outlines, pieces, blocker, outline, upstream, plane, beam, cosine):
-    """Pieces less a blocker's shadow; behind a pane the shadow is kept, dimmed."""
-    nearer = polygons.clip(blocker[None], upstream, plane)
-    walls, offsets = prism(nearer, beam.travel, np.array([cosine]))
+def _shadow(outlines: Outlines, pieces, blocker, walls, outline: int, travel):
+    """Pieces ``(m, v, 3)`` and their factors ``(m,)`` less a blocker's shadow; behind a pane it is kept, dimmed."""
+    tolerance = outlines.tolerance
+    batch, factors = pieces
+    normals, offsets = walls
+    # what lies beside the shadow stays whole
+    meets = ((batch @ normals.T - offsets).max(axis=1) > tolerance).all(axis=1)
+    if meets.any():
+        around, at = prism(batch[meets], travel, np.sign(polygons.newell_normal(batch[meets]) @ travel))
+        meets[meets] = ((around @ blocker.T - at[:, :, None]).max(axis=2) > tolerance).all(axis=1)
+    if not meets.any():
+        return pieces
+    left = [(batch[~meets], factors[~meets])]
+    inside, factors = batch[meets], factors[meets]
+    for normal, offset in zip(normals, offsets, strict=True):
+        if np.isinf(offset) or (inside @ normal - offset).min() >= 0:
+            continue
+        outside = polygons.clip(inside, -normal, -offset)
+        keep = wide(outside, tolerance)
+        left.append((outside[keep], factors[keep]))
+        inside = polygons.clip(inside, normal, offset)
+        lit = wide(inside, tolerance)
+        inside, factors = inside[lit], factors[lit]
+        if not len(inside):
+            break
     material = outlines.materials[outline]
-    through = float(material.transmittance_at(cosine)) if material.is_transparent else 0.0
-    left = []
-    for batch, factors in pieces:
-        inside = batch
-        for normal, offset in zip(walls[0], offsets[0], strict=True):
-            if not normal.any():
-                continue
-            height = inside @ normal - offset
-            if height.min() >= 0:
-                continue
-            if height.max() <= 0:
-                left.append((inside, factors))
-                inside, factors = inside[:0], factors[:0]
-                break
-            outside = polygons.clip(inside, -normal, -offset)
-            keep = wide(outside, outlines.tolerance)
-            if keep.any():
-                left.append((outside[keep], factors[keep]))
-            inside = polygons.clip(inside, normal, offset)
-            lit = wide(inside, outlines.tolerance)
-            inside, factors = inside[lit], factors[lit]
-            if not len(inside):
-                break
-        if through > 0 and len(inside):
-            left.append((inside, factors * through))
-    return left
+    if material.is_transparent:
+        through = float(material.transmittance_at(outlines.normals[outline] @ travel))
+        left.append((inside, factors * through))
+    left = [part for part in left if len(part[1])] or left[:1]
+    return polygons.joined([part[0] for part in left]), np.concatenate([part[1] for part in left])
 
 
 def wide(shapes, tolerance: float) -> np.ndarray:
     """(...) bool: polygons ``(..., v, 3)`` wider than a length; what is narrower is rounding."""
-    longest = np.linalg.norm(np.roll(shapes, -1, axis=-2) - shapes, axis=-1).max(axis=-1)
-    return polygons.areas(shapes) > tolerance * np.maximum(longest, tolerance)
+    p = np.asarray(shapes)
+    edge = np.concatenate([p[..., 1:, :], p[..., :1, :]], axis=-2) - p
+    longest = np.sqrt((edge * edge).sum(axis=-1).max(axis=-1, initial=0.0))
+    return polygons.areas(p) > tolerance * np.maximum(longest, tolerance)
 
 
 def prism(polygon, travel, cosine) -> tuple[np.ndarray, np.ndarray]:
@@ -275,11 +280,11 @@ def prism(polygon, travel, cosine) -> tuple[np.ndarray, np.ndarray]:
         Zero for padding edges (which then bound nothing: offset -inf).
     offsets : (o, w) float
     """
-    edge = np.roll(polygon, -1, axis=1) - polygon
+    edge = polygons.following(polygon) - polygon
     normals = polygons.cross(travel, edge) * np.sign(cosine)[:, None, None]
-    length = np.linalg.norm(normals, axis=2, keepdims=True)
+    length = np.sqrt((normals * normals).sum(axis=2, keepdims=True))
     # corners that differ by rounding alone make no edge
-    true = length > _ROUNDING * np.linalg.norm(edge, axis=2).max(axis=1)[:, None, None]
+    true = length > _ROUNDING * np.sqrt((edge * edge).sum(axis=2).max(axis=1, initial=0.0))[:, None, None]
     normals = np.where(true, normals / np.where(true, length, 1.0), 0.0)
     offsets = np.einsum("owc,owc->ow", normals, polygon)
     return normals, np.where(true[:, :, 0], offsets, -np.inf)
@@ -292,18 +297,53 @@ def _mouth_prism(mouth: np.ndarray, travel: np.ndarray) -> tuple[np.ndarray, np.
     return normals[0][bounding], offsets[0][bounding]
 
 
-def light_elements(
-    patches: list[SunPatch], elements, element_sheet, outline_sheet, sheets: int, specular: bool
-) -> np.ndarray:
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """Elements, sheet by sheet.
+
+    Attributes
+    ----------
+    corners : (e, 3, 3) float
+    sheet : (e,) int, plus ``sheets`` for backs
+    sheets : int
+    """
+
+    corners: np.ndarray
+    sheet: np.ndarray
+    sheets: int
+
+    @cached_property
+    def members(self) -> dict[int, np.ndarray]:
+        """Elements of each side of a sheet that has some."""
+        order = np.argsort(self.sheet, kind="stable")
+        parts = np.split(order, np.flatnonzero(np.diff(self.sheet[order])) + 1)
+        return {int(self.sheet[part[0]]): part for part in parts if len(part)}
+
+    @cached_property
+    def boxes(self) -> tuple[np.ndarray, np.ndarray]:
+        """(3, e) float twice: lowest and highest coordinates of each."""
+        return np.ascontiguousarray(self.corners.min(axis=1).T), np.ascontiguousarray(self.corners.max(axis=1).T)
+
+    def around(self, some: np.ndarray, polygon) -> np.ndarray:
+        """(k,) int: of some of them those that may lie within a polygon, by the boxes that bound them."""
+        low, high = polygon.min(axis=0), polygon.max(axis=0)
+        rounding = 1e-6 * (high - low).max()
+        lowest, highest = self.boxes
+        for axis in range(3):
+            mine = highest[axis].take(some) >= low[axis] - rounding
+            mine &= lowest[axis].take(some) <= high[axis] + rounding
+            some = some[mine]
+        return some
+
+
+def light_elements(patches: list[SunPatch], elements: Triangles, outline_sheet, specular: bool) -> np.ndarray:
     """Mean illuminance on elements from sun patches: exactly the lit share of each.
 
     Parameters
     ----------
     patches : list of SunPatch
-    elements : (e, 3, 3) float
-    element_sheet : (e,) int, plus ``sheets`` for backs
+    elements : Triangles
     outline_sheet : (o,) int
-    sheets : int
     specular : bool
         Patches that came by mirrors, or those that did not.
 
@@ -311,17 +351,14 @@ def light_elements(
     -------
     (e,) float [lx]
     """
-    out = np.zeros(len(elements))
-    members: dict[int, np.ndarray] = {}
+    out = np.zeros(len(elements.corners))
     for patch in patches:
         if (patch.order > 0) != specular:
             continue
-        sheet = int(outline_sheet[patch.outline]) + (0 if patch.front else sheets)
-        if sheet not in members:
-            members[sheet] = np.flatnonzero(element_sheet == sheet)
-        mine = members[sheet]
-        if len(mine):
-            out[mine] += patch.illuminance * lit_share(elements[mine], patch.polygon)
+        mine = elements.members.get(int(outline_sheet[patch.outline]) + (0 if patch.front else elements.sheets))
+        if mine is not None:
+            near = elements.around(mine, patch.polygon)
+            out[near] += patch.illuminance * lit_share(elements.corners[near], patch.polygon)
     return out
 
 
@@ -334,32 +371,18 @@ def lit_share(triangles, polygon) -> np.ndarray:
     true = length > _ROUNDING * length.max()
     inward, start = inward[true] / length[true, None], polygon[true]
     offset = np.einsum("ec,ec->e", inward, start)
-    near = _around(triangles, polygon)
-    distance = triangles[near].reshape(-1, 3) @ inward.T - offset
-    distance = distance.reshape(len(near), 3, len(inward))
-    inside = (distance >= 0).all(axis=(1, 2))
-    cut = near[~inside & (distance > 0).any(axis=1).all(axis=1)]
-    share = np.zeros(len(triangles))
-    share[near[inside]] = 1.0
-    if len(cut):
-        part = triangles[cut]
-        for n, p in zip(inward, start, strict=True):
-            part = polygons.clip(part, n, float(n @ p))
-        share[cut] = polygons.areas(part) / polygons.areas(triangles[cut])
+    distance = inward @ triangles.reshape(-1, 3).T - offset[:, None]
+    distance = distance.reshape(len(inward), len(triangles), 3)
+    low, high = distance.min(axis=2), distance.max(axis=2)
+    inside = (low >= 0).all(axis=0)
+    cut = np.flatnonzero(~inside & (high > 0).all(axis=0))
+    share = inside.astype(float)
+    part = triangles[cut]
+    for n, h, across in zip(inward, offset, (low[:, cut] < 0).any(axis=1), strict=True):
+        if across:
+            part = polygons.clip(part, n, float(h))
+    share[cut] = polygons.areas(part) / polygons.areas(triangles[cut])
     return share
-
-
-def _around(triangles, polygon) -> np.ndarray:
-    """(k,) int: triangles that may lie within a polygon, by the boxes that bound them."""
-    low, high = polygon.min(axis=0), polygon.max(axis=0)
-    rounding = 1e-6 * (high - low).max()
-    low, high = low - rounding, high + rounding
-    near = np.ones(len(triangles), bool)
-    for axis in range(3):
-        places = triangles[:, :, axis]
-        a, b, c = places[:, 0], places[:, 1], places[:, 2]
-        near &= (np.maximum(np.maximum(a, b), c) >= low[axis]) & (np.minimum(np.minimum(a, b), c) <= high[axis])
-    return np.flatnonzero(near)
 
 
 def light_points(outlines: Outlines, beams: list[Beam], points, normals) -> tuple[np.ndarray, np.ndarray]:

@@ -129,6 +129,22 @@ def test_pieces_make_the_whole(transfer, monkeypatch):
     np.testing.assert_allclose(transfer.solve_many(lights), whole, rtol=1e-5)
 
 
+@settings(max_examples=8, deadline=None)
+@given(st.floats(0.02, 0.95), st.floats(5, 80), st.floats(0, 360), st.sampled_from([20, 60, 300]))
+def test_nothing_is_negative_however_coarse(reflectance, altitude, azimuth, elements):
+    """Where more light arrives than was sent, what is taken away again is no more than there is, as with one light."""
+    pale, dark = luz.Material(diffuse_reflectance=0.95), luz.Material(diffuse_reflectance=reflectance)
+    scene = room(floor=pale, screen=dark, west=dark)
+    coarse = prepare_coarse(scene, elements=elements, patches=8, bands=6)
+    skies = [clear(altitude, azimuth, sun) for sun in (60_000.0, 0.0)]
+    suns = [luz.Daylight(sun=luz.Sun(altitude=altitude, azimuth=azimuth, normal_illuminance=60_000.0))]
+    for lux in (coarse.solve_many([*skies, *suns, NIGHT]), coarse.solve_many(suns, points=DESKS[0], normals=DESKS[1])):
+        assert np.isfinite(lux).all() and lux.min() >= 0
+    alone = coarse.solve(skies[1])
+    together = coarse.solve_many([skies[1]])[0]
+    assert together @ alone.areas == pytest.approx(alone.illuminance @ alone.areas, rel=0.02)
+
+
 def test_no_lights_no_rows(transfer):
     assert transfer.solve_many([]).shape == (0, len(transfer.geometry.fracture.faces))
 

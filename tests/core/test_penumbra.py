@@ -206,8 +206,8 @@ def test_a_room_with_mirrors_against_many_suns():
     geometry, sunlight = transfer.geometry, transfer.solve(SLANTED, cycles=0).sunlight
     points = geometry.element_points[::5]
     normals = geometry.element_normals[::5]
-    where = (geometry.fracture.elements, geometry.fracture.element_sheet, geometry.planes.outline_sheet)
-    mean, at = np.zeros((2, len(where[0]))), np.zeros((2, len(points)))
+    where = geometry.triangles, geometry.planes.outline_sheet
+    mean, at = np.zeros((2, len(geometry.element_points))), np.zeros((2, len(points)))
     for direction in many_suns(SLANTED):
         one = trace_sun(geometry.outlines, direction, 1 / 100, 1e-3, lambda: None)
         mean += one.on_elements(*where)
