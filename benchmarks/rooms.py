@@ -77,6 +77,27 @@ def with_boxes(count: int) -> luz.Scene:
     return scene
 
 
+def with_ball(rings: int) -> luz.Scene:
+    """The room with a ball of 1.2 m hung in it, whose facets all receive: twice the square of its rings."""
+    scene = shell()
+    polar, turn = np.pi * np.arange(rings + 1) / rings, np.pi * np.arange(2 * rings) / rings
+    level = np.sin(polar)[:, None]
+    up = np.broadcast_to(np.cos(polar)[:, None], (rings + 1, 2 * rings))
+    corners = np.stack([level * np.cos(turn), level * np.sin(turn), up], axis=2)
+    below, after = np.roll(corners, -1, axis=0)[:-1], np.roll(corners, -1, axis=1)
+    quads = np.stack([corners[:-1], below, np.roll(below, -1, axis=1), after[:-1]], axis=2).reshape(-1, 4, 3)
+    caps = 2 * rings
+    pieces = [quads[:caps, :3], quads[caps:-caps], quads[-caps:][:, [0, 1, 3]]]
+    vertices = 0.6 * np.concatenate([piece.reshape(-1, 3) for piece in pieces]) + [1.5, 1.4, 1.2]
+    first, faces = 0, []
+    for piece in pieces:
+        sides = piece.shape[1]
+        faces += (first + np.arange(len(piece) * sides).reshape(-1, sides)).tolist()
+        first += len(piece) * sides
+    scene.add("ball", vertices, WHITE, faces=faces)
+    return scene
+
+
 def with_shelf_of(count: int) -> luz.Scene:
     """The room with its light shelf cut in strips, each a mirror of its own plane, a centimetre above the last."""
     room, scene = light_shelf_room(), shell()

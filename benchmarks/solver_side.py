@@ -31,6 +31,7 @@ GROWTH = {
     "faces": (0.04, 0.02, 0.01, 0.005, 0.0025, 0.00125),
     "bands": (20, 30, 40, 60, 90),
     "planes": (0, 1, 2, 4, 8, 16),
+    "facets": (5, 10, 20, 40),
     "mirrors": (1, 2, 4, 8),
     "depth": (1, 2, 4, 8, 16),
 }
@@ -156,6 +157,8 @@ def growth(kind: str, value: float, bands: int, max_area: float, threads: int, r
         scene, options["bands"] = room.scene("S1"), int(value)
     elif kind == "planes":
         scene = rooms.with_boxes(int(value))
+    elif kind == "facets":
+        scene = rooms.with_ball(int(value))
     elif kind == "mirrors":
         scene = rooms.with_shelf_of(int(value))
     else:
@@ -174,6 +177,7 @@ def growth(kind: str, value: float, bands: int, max_area: float, threads: int, r
         "faces": len(result.areas),
         "bands": options["bands"],
         "planes": len(transfer.geometry.outlines.vertices),
+        "facets": len(transfer.geometry.outlines.vertices),
         "mirrors": value,
         "depth": value,
     }
