@@ -34,6 +34,9 @@ _SLIT = 0.3
 _SLIVER = 0.1
 """The same of openings beside a single edge."""
 
+_TWO_LAYERS = 1.5
+"""Shares that sum to more are of obstacles before each other, where no corner closes a single layer."""
+
 _SAME_EDGE = 1e-4
 """Shares of two obstacles at one edge that sum to 1 this closely belong to obstacles that share the edge."""
 
@@ -70,10 +73,10 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
     closed[~simple] = np.linalg.norm(_group_sums(crossed.edge_sum, starts, ~simple), axis=1) < _SEAM
 
     # several edges, but no opening: shares by each edge alone, brought to a sum of 1
-    filled = ~simple & (total > 1e-9) & closed & (background == OPEN) & ~partial
+    filled = ~simple & (total > 1e-9) & (total < _TWO_LAYERS) & closed & (background == OPEN) & ~partial
     # the part's share of the cosine-weighted beam, to first order
     change = dots(crossed.offset, beams.slopes.take(crossed.beam, axis=0))
-    share = crossed.share * np.clip(1 + change, 0.0, 2.0)
+    share = crossed.share * np.clip(1 + change, 1e-6, 2.0)
     weighted = np.add.reduceat(share, starts)
     # two obstacles share the edge: nothing is left between them, to the last bit
     whole = joined | filled

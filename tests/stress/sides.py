@@ -103,6 +103,32 @@ def shared_wall(gap: float) -> Outcome:
     return near(dark, np.zeros(len(dark)), 0, 1e-9 * result.mean("lit floor"))
 
 
+def rooms_around_a_lit_one() -> Outcome:
+    """Six closed rooms around a lit one, wall to wall: all are dark."""
+    scene = luz.Scene()
+    origins = [(0, 0, 0), (2, 0, 0), (-2, 0, 0), (0, 2, 0), (0, -2, 0), (0, 0, 2), (0, 0, -2)]
+    for title, origin in zip(["lit", *"abcdef"], origins, strict=True):
+        for name, polygon in box_polygons((2, 2, 2), origin).items():
+            glow = 1000.0 if (title, name) == ("lit", "ceiling") else 0.0
+            scene.add(f"{title} {name}", polygon, luz.Material(diffuse_reflectance=0.6, exitance=glow))
+    result = solved(scene, DARK, bands=24, elements=1500, patches=500)
+    worst = max(result.illuminance[result.faces_of(f"{t} {n}")].max() for t in "abcdef" for n in box_polygons())
+    return near(worst, 0.0, 0, 1e-9 * result.mean("lit floor"))
+
+
+def cabinet() -> Outcome:
+    """A closed cabinet (walls of both sides, or inner and outer ones) in a bright room: it is dark inside, to 1e-4 of the light outside."""
+    scene = luz.Scene()
+    for name, polygon in box_polygons((3, 3, 3)).items():
+        scene.add(name, polygon, luz.Material(diffuse_reflectance=0.5, exitance=1000.0))
+    for name, polygon in box_polygons((0.8, 0.6, 1.2), (1, 1, 0.5)).items():
+        scene.add(f"cabinet {name}", polygon, GREY, two_sided=True)
+    result = solved(scene, DARK, bands=24, elements=500, patches=200)
+    worst = max(result.illuminance[result.faces_of(f"cabinet {n}")].max() for n in box_polygons())
+    outer = result.back.illuminance[result.faces_of("cabinet west")]
+    return all_of(near(worst, 0.0, 0, 1e-4 * result.mean("floor")), holds(bool((outer > 100).all()), "lit", "outside"))
+
+
 def sunlit_room_beside_a_closed_one(gap: float) -> Outcome:
     """A room under Sun and sky beside a closed one."""
     scene = luz.Scene()
@@ -179,3 +205,5 @@ def situations() -> Iterator[Situation]:
     yield row("none is wanted", lambda: wanted_is_refused([], "receivers", "empty"))
     yield row("one that is not there is wanted", lambda: wanted_is_refused(["flor"], "'flor'", "floor"))
     yield row("a name instead of a list", lambda: wanted_is_refused("floor", "list"))
+    yield row("six dark rooms around a lit one", rooms_around_a_lit_one)
+    yield row("a closed cabinet in a bright room", cabinet)
