@@ -117,7 +117,7 @@ def rooms_around_a_lit_one() -> Outcome:
 
 
 def cabinet() -> Outcome:
-    """A closed cabinet (walls of both sides, or inner and outer ones) in a bright room: it is dark inside, to 1e-4 of the light outside."""
+    """A closed cabinet in a bright room is dark inside, to 1e-4 of the light outside: walls of both sides."""
     scene = luz.Scene()
     for name, polygon in box_polygons((3, 3, 3)).items():
         scene.add(name, polygon, luz.Material(diffuse_reflectance=0.5, exitance=1000.0))
