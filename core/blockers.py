@@ -391,7 +391,7 @@ def light_past(
         some, row = seen.take(mine), seen.row[mine]
         blocker = overlaps.outer[pairs[start[mine] + np.arange(number)[:, None]]]
         screens = corners.take(blocker, axis=2).transpose(2, 0, 1, 3) - points[row].T[:, None]
-        factor = unhidden.form_factors(some.shape, screens, facing[blocker, row], normal)
+        factor = unhidden.form_factors(some.shape, screens, facing[blocker, row], normal, outlines.tolerance)
         out += np.bincount(row, weights=_reflected(some, mirrors) * np.maximum(factor, 0.0), minlength=len(out))
     return out
 

@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-_ON_EDGE = 1e-12
-"""Height of unit vectors over an edge's plane, times the edge's length, up to which they lie on its great circle."""
+_ON_EDGE, _MOST_ON_EDGE = 1e-12, 1e-6
+"""Height of unit vectors over an edge's plane, times the edge's length, up to which they lie on its great circle: at
+least, and at most where corners are near and rounding of their places makes a large angle."""
 
 _NO_EDGE = 1e-11
 """Sine of the angle that an edge spans, below which it bounds nothing."""
@@ -23,7 +24,9 @@ _VALUES = 40_000
 """Corners times edges times pairs that are looked at together: they stay in cache."""
 
 
-def form_factors(shapes: np.ndarray, screens: np.ndarray, facing: np.ndarray, normal: np.ndarray) -> np.ndarray:
+def form_factors(
+    shapes: np.ndarray, screens: np.ndarray, facing: np.ndarray, normal: np.ndarray, tolerance: float = 0.0
+) -> np.ndarray:
     """Form factors from points to what they see of polygons past opaque screens.
 
     Parameters
@@ -37,6 +40,8 @@ def form_factors(shapes: np.ndarray, screens: np.ndarray, facing: np.ndarray, no
         Positive where a screen's right-hand normal looks at the point, negative where away.
     normal : (3,) float, unit
         Of the points.
+    tolerance : float
+        Distance at which corners may be meant to lie on an edge [m].
 
     Returns
     -------
@@ -47,7 +52,7 @@ def form_factors(shapes: np.ndarray, screens: np.ndarray, facing: np.ndarray, no
     found = np.empty(count)
     for first in range(0, count, step):
         some = slice(first, first + step)
-        found[some] = _along_contours(shapes[..., some], screens[..., some], facing[:, some], normal)
+        found[some] = _along_contours(shapes[..., some], screens[..., some], facing[:, some], normal, tolerance)
     return found
 
 
@@ -61,11 +66,13 @@ def whole_form_factors(shapes: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return np.divide(angle, length, out=angle, where=length > 0).sum(axis=0) / (2 * np.pi)
 
 
-def _along_contours(shapes, screens, facing, normal) -> np.ndarray:
+def _along_contours(shapes, screens, facing, normal, tolerance: float) -> np.ndarray:
     k, _, w, n = screens.shape
     v = shapes.shape[1]
     start = np.concatenate([shapes, screens.transpose(1, 0, 2, 3).reshape(3, k * w, n)], axis=1)
-    start /= np.maximum(np.sqrt(_dot(start, start)), _TINY)
+    distance = np.maximum(np.sqrt(_dot(start, start)), _TINY)
+    start /= distance
+    on_edge = np.clip(tolerance / distance.min(axis=0), _ON_EDGE, _MOST_ON_EDGE)
     after = _following(start[:, v:].reshape(3, k, w, n), 2).reshape(3, k * w, n)
     end = np.concatenate([_following(start[:, :v]), after], axis=1)
     pole = _cross(end, start)  # of polygons that face the point it looks inwards
@@ -86,7 +93,7 @@ def _along_contours(shapes, screens, facing, normal) -> np.ndarray:
     # of the screens' edges what lies within the polygon, borders not included
     height = heights(own, others)
     after = _following(height.reshape(v, k, w, n), 2).reshape(v, k * w, n)
-    low, high = _between(height, after, _lying(height, after, edge[own]))
+    low, high = _between(height, after, _lying(height, after, edge[own], on_edge))
     low, high = np.concatenate([np.zeros((v, n)), low]), np.concatenate([np.ones((v, n)), high])
     # of all edges what each screen covers
     covers = np.full((2, k, v + k * w, n), 2.0)
@@ -98,7 +105,7 @@ def _along_contours(shapes, screens, facing, normal) -> np.ndarray:
         if k > 1:
             parts.append(_following(height[:, v:].reshape(w, k, w, n), 2).reshape(w, k * w, n))
         after = np.concatenate(parts, axis=1)
-        lies = _lying(height, after, edge[mine])
+        lies = _lying(height, after, edge[mine], on_edge)
         if lies is not None:
             # where two lie on each other with the same inner side, one counts: the later screen's, never the polygon's
             plane, other, pair = np.nonzero(lies)
@@ -110,12 +117,12 @@ def _along_contours(shapes, screens, facing, normal) -> np.ndarray:
     return _sum_of_gaps(low, high, covers[0], covers[1], start, end, pole, length, v, normal)
 
 
-def _lying(first, last, edge) -> np.ndarray | None:
+def _lying(first, last, edge, on_edge) -> np.ndarray | None:
     """(p, c, n) bool: segments that lie on the great circles of edges, whose heights become 1; None where none do."""
-    lies = np.abs(first) <= _ON_EDGE * edge[:, None]
+    lies = np.abs(first) <= on_edge * edge[:, None]
     if not lies.any():
         return None
-    lies &= np.abs(last) <= _ON_EDGE
+    lies &= np.abs(last) <= on_edge
     lies &= edge[:, None]
     if not lies.any():
         return None
