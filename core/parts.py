@@ -37,6 +37,8 @@ _SLIVER = 0.1
 _TWO_LAYERS = 1.5
 """Shares that sum to more are of obstacles before each other, where no corner closes a single layer."""
 
+_SAME_PLANE = 1e-9
+
 _SAME_EDGE = 1e-4
 """Shares of two obstacles at one edge that sum to 1 this closely belong to obstacles that share the edge."""
 
@@ -73,7 +75,9 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
     closed[~simple] = np.linalg.norm(_group_sums(crossed.edge_sum, starts, ~simple), axis=1) < _SEAM
 
     # several edges, but no opening: shares by each edge alone, brought to a sum of 1
-    filled = ~simple & (total > 1e-9) & (total < _TWO_LAYERS) & closed & (background == OPEN) & ~partial
+    single = total < _TWO_LAYERS
+    single[~single] = _in_one_plane(crossed, starts, ~single, heights, obstacles)
+    filled = ~simple & (total > 1e-9) & single & closed & (background == OPEN) & ~partial
     # the part's share of the cosine-weighted beam, to first order
     change = dots(crossed.offset, beams.slopes.take(crossed.beam, axis=0))
     share = crossed.share * np.clip(1 + change, 1e-6, 2.0)
@@ -121,6 +125,20 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
         possible,
         heights,
     )
+
+
+def _in_one_plane(crossed: Crossed, starts: np.ndarray, which: np.ndarray, heights, obstacles: Obstacles) -> np.ndarray:
+    """(w,) bool: whether all obstacles of some groups that begin at ``starts`` lie in one plane, in one layer."""
+    sizes = np.diff(np.append(starts, len(crossed.row)))
+    rows = np.flatnonzero(np.repeat(which, sizes))
+    begin = np.cumsum(sizes[which]) - sizes[which]
+    alike = np.ones(len(begin), bool)
+    if len(begin):
+        row, obstacle = crossed.row[rows], crossed.obstacle[rows]
+        for values in (pick(heights, row, obstacle), *obstacles.normals[obstacle].T):
+            apart = np.maximum.reduceat(values, begin) - np.minimum.reduceat(values, begin)
+            alike &= apart <= _SAME_PLANE * np.maximum.reduceat(np.abs(values), begin) + _SAME_PLANE * 1e-3
+    return alike
 
 
 def _group_sums(values: np.ndarray, starts: np.ndarray, which: np.ndarray) -> np.ndarray:

@@ -123,12 +123,9 @@ def test_no_light_is_lost_behind_a_balls_facets(monkeypatch):
     scene.add("ball", facets.reshape(-1, 3), WHITE, faces=np.arange(facets.size // 3).reshape(-1, 3))
     quick = prepare_coarse(scene, bands=30).solve(UNIFORM)
     whole = looked_at_wholly(scene, monkeypatch, bands=30).solve(UNIFORM)
-    fine, finer = (
-        looked_at_wholly(scene, monkeypatch, bands=90).solve(UNIFORM),
-        prepare_coarse(scene, bands=90).solve(UNIFORM),
-    )
-    assert quick.balance.unlit < 1e-4 * quick.balance.entering < whole.balance.unlit
-    errors = [abs(r.mean("ball") - finer.mean("ball")) for r in (quick, fine, whole)]
+    finer = prepare_coarse(scene, bands=90).solve(UNIFORM)
+    assert quick.balance.unlit < 1e-6 * quick.balance.entering < whole.balance.unlit
+    errors = [abs(r.mean("ball") - finer.mean("ball")) for r in (quick, whole)]
     assert errors == sorted(errors)
 
 
