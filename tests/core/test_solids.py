@@ -125,8 +125,8 @@ def test_no_light_is_lost_behind_a_balls_facets(monkeypatch):
     whole = looked_at_wholly(scene, monkeypatch, bands=30).solve(UNIFORM)
     finer = prepare_coarse(scene, bands=90).solve(UNIFORM)
     assert quick.balance.unlit < 1e-6 * quick.balance.entering < whole.balance.unlit
-    errors = [abs(r.mean("ball") - finer.mean("ball")) for r in (quick, whole)]
-    assert errors == sorted(errors)
+    for result in (quick, whole):
+        assert result.mean("ball") == pytest.approx(finer.mean("ball"), rel=1e-3)
 
 
 def test_what_a_block_stands_on_stays_dark():
