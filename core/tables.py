@@ -4,12 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .result import COMPONENTS, INITIAL, Result, Side
+
+
+class Spread(NamedTuple):
+    """Least, mean and largest illuminance of an area [lx], the mean weighted by area."""
+
+    minimum: float
+    mean: float
+    maximum: float
+
+    @property
+    def uniformity(self) -> float:
+        """Minimum over mean (EN 12665, U₀); NaN in the dark."""
+        return self.minimum / self.mean if self.mean > 0.0 else float("nan")
 
 
 @dataclass(frozen=True)
@@ -22,21 +35,19 @@ class SurfaceStatistics:
     side : "front" or "back"
     area : float
         [m²]
-    minimum, mean, maximum : float
-        [lx], the mean weighted by area.
+    spreads : dict of str to Spread
+        By quantity, those of `QUANTITIES` first.
     """
 
     name: str
     side: str
     area: float
-    minimum: float
-    mean: float
-    maximum: float
+    spreads: dict[str, Spread]
 
     @property
-    def uniformity(self) -> float:
-        """Minimum over mean (EN 12665, U₀); NaN in the dark."""
-        return self.minimum / self.mean if self.mean > 0.0 else float("nan")
+    def total(self) -> Spread:
+        """All light, interreflection included."""
+        return self.spreads[QUANTITIES[0]]
 
 
 def computed_faces(result: Result, names: Iterable[str]) -> Iterator[tuple[str, str, Side, NDArray[np.intp]]]:
@@ -50,13 +61,30 @@ def computed_faces(result: Result, names: Iterable[str]) -> Iterator[tuple[str, 
                     yield name, label, side, known
 
 
-def surface_statistics(result: Result, names: Iterable[str]) -> list[SurfaceStatistics]:
-    """Return the statistics of each side of the surfaces, in the order of `names`."""
+def surface_statistics(
+    result: Result, names: Iterable[str], more: dict[str, NDArray[np.float64]] | None = None
+) -> list[SurfaceStatistics]:
+    """Return the statistics of each side of the surfaces, in the order of `names`.
+
+    Parameters
+    ----------
+    result : Result
+    names : iterable of str
+        Surfaces.
+    more : dict of str to (n,) float, optional
+        Further quantities of fronts, such as errors.
+    """
+    known = {"front": quantities(result.front) | (more or {})}
+    if result.back is not None:
+        known["back"] = quantities(result.back)
+    stacked = {label: np.stack(list(values.values())) for label, values in known.items()}
     rows = []
     for name, label, side, faces in computed_faces(result, names):
-        values, areas = side.illuminance[faces], side.areas[faces]
-        mean = float(np.average(values, weights=areas))
-        rows.append(SurfaceStatistics(name, label, float(areas.sum()), float(values.min()), mean, float(values.max())))
+        values, areas = stacked[label][:, faces], side.areas[faces]
+        area = areas.sum()
+        parts = (values.min(axis=1), (values * areas).sum(axis=1) / area, values.max(axis=1))
+        spreads = map(Spread._make, np.column_stack(parts).tolist())
+        rows.append(SurfaceStatistics(name, label, float(area), dict(zip(known[label], spreads, strict=True))))
     return rows
 
 
@@ -76,12 +104,17 @@ def point_quantities(result: Result, points, normals) -> dict[str, NDArray[np.fl
     return {"illuminance": initial + parts["interreflected"], "initial": initial, **parts}
 
 
-SURFACE_HEADER = ("surface", "side", "area_m2", "minimum_lx", "mean_lx", "maximum_lx", "uniformity")
+SURFACE_HEADER = (
+    *("surface", "side", "area_m2", "minimum_lx", "mean_lx", "maximum_lx", "uniformity"),
+    *(f"{quantity}_{part}_lx" for quantity in QUANTITIES[1:] for part in Spread._fields),
+)
+"""Totals first, then the least, mean and largest of each other quantity."""
 
 
 def surface_row(row: SurfaceStatistics) -> tuple[str | float, ...]:
     """Return a row for `SURFACE_HEADER`."""
-    return (row.name, row.side, row.area, row.minimum, row.mean, row.maximum, row.uniformity)
+    others = (value for quantity in QUANTITIES[1:] for value in row.spreads[quantity])
+    return (row.name, row.side, row.area, *row.total, row.total.uniformity, *others)
 
 
 def face_rows(result: Result, names: Iterable[str]) -> tuple[list[str], Iterator[list[str | float]]]:

@@ -45,7 +45,10 @@ def print_statistics(title: str, rows: Sequence[SurfaceStatistics]) -> None:
     print(f"\n{title}")
     print(f"{'':<{width}} {'minimum':>10} {'mean':>10} {'maximum':>10} {'uniformity':>11}   [lx]")
     for name, row in zip(names, rows, strict=True):
-        print(f"{name:<{width}} {row.minimum:10.1f} {row.mean:10.1f} {row.maximum:10.1f} {row.uniformity:11.3f}")
+        total = row.total
+        print(
+            f"{name:<{width}} {total.minimum:10.1f} {total.mean:10.1f} {total.maximum:10.1f} {total.uniformity:11.3f}"
+        )
 
 
 def clock(hour: float) -> str:

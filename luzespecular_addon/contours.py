@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Vector
 from numpy.typing import NDArray
 
-from . import colours, isolines, mesh_arrays, smoothing
+from . import colours, isolines, mesh_arrays, own_objects, smoothing
 
 if TYPE_CHECKING:
     from .display import Shown
@@ -36,7 +36,7 @@ _LABELS_APART = 0.06
 
 def find(scene: bpy.types.Scene) -> bpy.types.Object | None:
     """Return the object of the lines, if there is one."""
-    return next((object_ for object_ in scene.objects if object_.luzespecular.results_side == SIDE), None)
+    return own_objects.find(scene, SIDE)
 
 
 def levels(scene: bpy.types.Scene, scale: colours.ColourScale) -> list[float]:
@@ -85,21 +85,13 @@ def _carries_lines(scene: bpy.types.Scene, object_: bpy.types.Object) -> bool:
 
 def remove(scene: bpy.types.Scene) -> None:
     """Delete the object of the lines and its mesh."""
-    object_ = find(scene)
-    if object_ is not None:
-        mesh = object_.data
-        bpy.data.objects.remove(object_)
-        if mesh.users == 0:
-            bpy.data.meshes.remove(mesh)
+    own_objects.remove(scene, (SIDE,))
 
 
 def _new(scene: bpy.types.Scene) -> bpy.types.Object:
-    object_ = bpy.data.objects.new(NAME, bpy.data.meshes.new(NAME))
-    object_.luzespecular.is_results, object_.luzespecular.results_side = True, SIDE
+    object_ = own_objects.new(scene, NAME, SIDE, bpy.data.meshes.new(NAME))
     object_.hide_render = True
-    scene.collection.objects.link(object_)
-    for view_layer in scene.view_layers:  # drawn by `overlays`, thicker and on any ground
-        object_.hide_set(True, view_layer=view_layer)
+    own_objects.hide(scene, object_)  # drawn by `overlays`, thicker and on any ground
     return object_
 
 

@@ -20,6 +20,7 @@ from . import (
     mesh_arrays,
     pins,
     results_object,
+    results_table,
     session,
     smoothing,
     work_planes,
@@ -79,6 +80,7 @@ def write(
     for own in writeback.own_results(export, result):
         writeback.write(own)
     results.run = session.current.keep_result(scene.name, export, result)
+    results_table.fill(scene, export, result)
     if scene.luzespecular.display.view == "RESULTS":
         results_object.write(scene, export, result)
     else:
@@ -174,6 +176,7 @@ def _errors_found(scene: bpy.types.Scene, kept: tuple[Export, luz.Result]) -> No
     """Write the errors of the result that is shown, which were still on their way, and show them."""
     for own in writeback.own_results(*kept):
         writeback.write(own)
+    results_table.fill(scene, *kept)
     if results_object.all_of(scene):
         results_object.write(scene, *kept)
     recolour(scene)

@@ -14,7 +14,7 @@ from bpy.app.translations import pgettext_iface as iface_
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from . import colours, legend, mesh_arrays, writeback
+from . import colours, legend, mesh_arrays, own_objects, writeback
 
 NAME = "LuzEspecular legend"
 SIDE = "legend"
@@ -37,7 +37,7 @@ _ROUNDING = 1e-5
 
 def find(scene: bpy.types.Scene) -> bpy.types.Object | None:
     """Return the object of the legend, if there is one."""
-    return next((object_ for object_ in scene.objects if object_.luzespecular.results_side == SIDE), None)
+    return own_objects.find(scene, SIDE)
 
 
 def update(scene: bpy.types.Scene, scale: colours.ColourScale, wanted: bool) -> None:
@@ -47,13 +47,10 @@ def update(scene: bpy.types.Scene, scale: colours.ColourScale, wanted: bool) -> 
         return
     object_, words = find(scene), Words.of(scene, scale)
     if object_ is None:
-        object_ = bpy.data.objects.new(NAME, new_mesh(words, scale.name))
-        object_.luzespecular.is_results, object_.luzespecular.results_side = True, SIDE
+        object_ = own_objects.new(scene, NAME, SIDE, new_mesh(words, scale.name))
         for ray in ("diffuse", "glossy", "transmission", "volume_scatter", "shadow"):
             setattr(object_, f"visible_{ray}", False)
-        scene.collection.objects.link(object_)
-        for view_layer in scene.view_layers:  # a viewport draws a legend of its own
-            object_.hide_set(True, view_layer=view_layer)
+        own_objects.hide(scene, object_)  # a viewport draws a legend of its own
     elif object_.luzespecular.state != words.state(scale.name):
         before, object_.data = object_.data, new_mesh(words, scale.name)
         bpy.data.meshes.remove(before)
@@ -72,12 +69,7 @@ def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 def remove(scene: bpy.types.Scene) -> None:
     """Delete the legend's object and mesh."""
-    object_ = find(scene)
-    if object_ is not None:
-        mesh = object_.data
-        bpy.data.objects.remove(object_)
-        if mesh.users == 0:
-            bpy.data.meshes.remove(mesh)
+    own_objects.remove(scene, (SIDE,))
 
 
 def stand(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .. import core as luz
 from ..core import tables
-from . import mesh_arrays, writeback
+from . import mesh_arrays, own_objects, writeback
 from .export import Export
 
 NAMES = {"front": "LuzEspecular results", "back": "LuzEspecular results (backs)"}
@@ -26,12 +26,12 @@ SURFACE = "surface"
 
 def find(scene: bpy.types.Scene, side: str = "front") -> bpy.types.Object | None:
     """Return the results object of one side, if there is one."""
-    return next((object_ for object_ in all_of(scene) if object_.luzespecular.results_side == side), None)
+    return own_objects.find(scene, side)
 
 
 def all_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Return the results objects of a scene."""
-    return [object_ for object_ in scene.objects if object_.luzespecular.results_side in NAMES]
+    return own_objects.all_of(scene, NAMES)
 
 
 def write(scene: bpy.types.Scene, export: Export, result: luz.Result) -> None:
@@ -45,8 +45,7 @@ def write(scene: bpy.types.Scene, export: Export, result: luz.Result) -> None:
         chosen = [(row, faces) for row, (_, side, _, faces) in parts if side == label]
         object_ = find(scene, label)
         if not chosen:
-            if object_ is not None:
-                _remove(object_)
+            own_objects.remove(scene, (label,))
             continue
         faces = np.concatenate([faces for _, faces in chosen])
         corners = result.vertices[faces] / export.unit_scale
@@ -54,8 +53,7 @@ def write(scene: bpy.types.Scene, export: Export, result: luz.Result) -> None:
             corners = _behind(corners)
         positions = corners.reshape(-1, 3).astype(np.float32)
         if object_ is None or not _stands_at(object_.data, positions):
-            if object_ is not None:
-                _remove(object_)
+            own_objects.remove(scene, (label,))
             object_ = _new(scene, label, positions)
         for quantity, values in writeback.quantities(result, label).items():
             mesh_arrays.write_face_floats(object_.data, writeback.attribute_of(quantity), values[faces])
@@ -78,21 +76,11 @@ def _stands_at(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> bool:
 
 def _new(scene: bpy.types.Scene, label: str, positions: NDArray[np.float32]) -> bpy.types.Object:
     mesh = mesh_arrays.new_triangle_mesh(NAMES[label], positions.reshape(-1, 3, 3))
-    object_ = bpy.data.objects.new(NAMES[label], mesh)
-    object_.luzespecular.is_results, object_.luzespecular.results_side = True, label
+    object_ = own_objects.new(scene, NAMES[label], label, mesh)
     object_.hide_render = True
-    scene.collection.objects.link(object_)
     return object_
 
 
 def remove(scene: bpy.types.Scene) -> None:
     """Delete the results objects of a scene together with their meshes."""
-    for object_ in all_of(scene):
-        _remove(object_)
-
-
-def _remove(object_: bpy.types.Object) -> None:
-    mesh = object_.data
-    bpy.data.objects.remove(object_)
-    if mesh.users == 0:
-        bpy.data.meshes.remove(mesh)
+    own_objects.remove(scene, NAMES)

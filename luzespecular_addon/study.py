@@ -13,7 +13,6 @@ from bpy.app.translations import pgettext_iface as iface_
 from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import core as luz
-from ..core import tables
 from ..core.terminal import clock
 from . import display, export, light, scene_check, session, work_planes, writeback
 from .choices import SKY_ITEMS
@@ -175,7 +174,12 @@ def show(
 ) -> tuple[Notice, ...]:
     """Write results to meshes and tables and colour them, whatever the viewports show; see `finish`."""
     notices = (*study.notices, *_remarks_of_solver(result))
-    _fill_table(scene, study, result, notices)
+    results = scene.luzespecular.results
+    results.title = study.title
+    results.notices.clear()
+    for notice in notices:
+        entry = results.notices.add()
+        entry.level, entry.text = notice.level, notice.text
     display.write(scene, study.export, result, readings)
     return notices
 
@@ -240,20 +244,3 @@ def _solving(accuracy: bpy.types.PropertyGroup) -> dict:
         "tolerance": as_typed(accuracy.tolerance),
         "cycles": None if accuracy.cycles < 0 else accuracy.cycles,
     }
-
-
-def _fill_table(scene: bpy.types.Scene, study: Study, result: luz.Result, notices: tuple[Notice, ...]) -> None:
-    results = scene.luzespecular.results
-    results.title = study.title
-    results.rows.clear()
-    receivers = {surface.name: surface for surface in study.export.surfaces if surface.receiver}
-    for statistics in tables.surface_statistics(result, receivers):
-        row = results.rows.add()
-        row.name, row.object_name = statistics.name, receivers[statistics.name].object_name
-        row.side = statistics.side
-        row.area, row.minimum, row.mean = statistics.area, statistics.minimum, statistics.mean
-        row.maximum, row.uniformity = statistics.maximum, statistics.uniformity
-    results.notices.clear()
-    for notice in notices:
-        entry = results.notices.add()
-        entry.level, entry.text = notice.level, notice.text

@@ -1,15 +1,13 @@
 """Clear the results, save their table."""
 
-from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.app.translations import pgettext_rpt as rpt_
-from bpy_extras.io_utils import ExportHelper
 
-from ...core import files, tables
-from .. import display
+from ...core import tables
+from .. import display, results_table
 from .polls import NeedsResults
+from .saving import SavesTable
 
 
 class LUZESPECULAR_OT_clear_results(NeedsResults, bpy.types.Operator):
@@ -26,15 +24,12 @@ class LUZESPECULAR_OT_clear_results(NeedsResults, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class LUZESPECULAR_OT_save_table(bpy.types.Operator, ExportHelper):
+class LUZESPECULAR_OT_save_table(SavesTable, bpy.types.Operator):
     """Save the table of surfaces as a CSV file."""
 
     bl_idname = "luzespecular.save_table"
     bl_label = "Save Table"
     bl_description = "Save the table of surfaces as a CSV file"
-
-    filename_ext = ".csv"
-    filter_glob: bpy.props.StringProperty(default="*.csv", options={"HIDDEN"})
 
     @classmethod
     def poll(cls, context):
@@ -44,20 +39,10 @@ class LUZESPECULAR_OT_save_table(bpy.types.Operator, ExportHelper):
         cls.poll_message_set("There are no results yet: solve first")
         return False
 
-    def execute(self, context):
-        """Write the file."""
-        rows = (
-            tables.surface_row(
-                tables.SurfaceStatistics(row.name, row.side, row.area, row.minimum, row.mean, row.maximum)
-            )
-            for row in context.scene.luzespecular.results.rows
-        )
-        try:
-            files.write_csv(Path(self.filepath), tables.SURFACE_HEADER, rows)
-        except OSError as error:
-            self.report({"ERROR"}, rpt_("The table could not be saved: {error}").format(error=error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+    def table(self, context):
+        """All quantities of all surfaces."""
+        rows = context.scene.luzespecular.results.rows
+        return tables.SURFACE_HEADER, map(tables.surface_row, map(results_table.statistics, rows))
 
 
 CLASSES = (LUZESPECULAR_OT_clear_results, LUZESPECULAR_OT_save_table)

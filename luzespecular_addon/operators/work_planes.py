@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import ClassVar
 
 import bpy
 import numpy as np
 from bpy.app.translations import pgettext_data as data_
 from bpy.app.translations import pgettext_rpt as rpt_
-from bpy_extras.io_utils import ExportHelper
 
-from ...core import files
 from .. import floor_grid, mesh_arrays, participants, placements, work_planes, writeback
 from ..properties.kinds import FloatProperty
 from .polls import NeedsObjectMode
+from .saving import SavesTable
 
 
 class LUZESPECULAR_OT_add_work_plane(NeedsObjectMode, bpy.types.Operator):
@@ -63,15 +61,12 @@ class LUZESPECULAR_OT_add_work_plane(NeedsObjectMode, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class LUZESPECULAR_OT_save_work_planes(bpy.types.Operator, ExportHelper):
+class LUZESPECULAR_OT_save_work_planes(SavesTable, bpy.types.Operator):
     """Save the points of all work planes and their illuminance as a CSV file."""
 
     bl_idname = "luzespecular.save_work_planes"
     bl_label = "Save Points"
     bl_description = "Save the points of all work planes and their illuminance as a CSV file"
-
-    filename_ext = ".csv"
-    filter_glob: bpy.props.StringProperty(default="*.csv", options={"HIDDEN"})
 
     @classmethod
     def poll(cls, context):
@@ -81,15 +76,9 @@ class LUZESPECULAR_OT_save_work_planes(bpy.types.Operator, ExportHelper):
         cls.poll_message_set("No work plane has been read yet: solve first")
         return False
 
-    def execute(self, context):
-        """Write the file."""
-        rows = work_planes.rows(context.scene, placements.unit_scale(context.scene))
-        try:
-            files.write_csv(Path(self.filepath), work_planes.HEADER, rows)
-        except OSError as error:
-            self.report({"ERROR"}, rpt_("The table could not be saved: {error}").format(error=error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+    def table(self, context):
+        """All quantities at all points."""
+        return work_planes.HEADER, work_planes.rows(context.scene, placements.unit_scale(context.scene))
 
 
 def _floor_objects(context) -> list[bpy.types.Object]:

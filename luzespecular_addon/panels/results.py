@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from typing import ClassVar
 
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
-from .. import display, false_colour, isolines, render_legend
-from ..legend import label
+from ...core import tables
+from .. import display, false_colour, isolines, render_legend, results_table
+from ..legend import label, title
 from ..translations import CONTEXT
 from .drawing import Sidebar, draw_notices, draw_wrapped
 
@@ -16,9 +18,9 @@ from .drawing import Sidebar, draw_notices, draw_wrapped
 class LUZESPECULAR_UL_surfaces(bpy.types.UIList):
     """Rows of the results table."""
 
-    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, _index):
+    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_property, _index):
         """Draw one surface."""
-        _draw_columns(layout, _side_name(item), *map(_short, (item.minimum, item.mean, item.maximum)))
+        _draw_columns(layout, _side_name(item), *map(_short, _shown_spread(context.scene, item)))
 
 
 class LUZESPECULAR_PT_results(Sidebar, bpy.types.Panel):
@@ -160,7 +162,7 @@ class LUZESPECULAR_PT_table(_PartOfResults, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the panel."""
-        _draw_table(self.layout, context.scene.luzespecular.results)
+        _draw_table(self.layout, context.scene)
         self.layout.operator("luzespecular.save_table", icon="FILE_TEXT")
 
 
@@ -183,22 +185,33 @@ def _side_name(row: bpy.types.PropertyGroup) -> str:
     return row.name if row.side == "front" else iface_("{name} (back)").format(name=row.name)
 
 
-def _draw_table(layout: bpy.types.UILayout, results: bpy.types.PropertyGroup) -> None:
+def _shown_spread(scene: bpy.types.Scene, row: bpy.types.PropertyGroup) -> tables.Spread:
+    """Return what a row says of the quantity shown, in the unit shown."""
+    factor = display.unit_factor(scene)
+    return tables.Spread(*(factor * lux for lux in results_table.spread(row, scene.luzespecular.display.quantity)))
+
+
+def _draw_table(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
+    results = scene.luzespecular.results
+    layout.label(text=title(scene), translate=False)
     row = layout.row()
     # In our context, since Blender's own words for these are too long for a column.
     heads = (iface_("Min", CONTEXT), iface_("Mean", CONTEXT), iface_("Max", CONTEXT))
-    _draw_columns(row, iface_("Total [lx]"), *heads)
+    _draw_columns(row, iface_("Surface", CONTEXT), *heads)
     row.label(text="", icon="BLANK1")  # as wide as the list's scroll bar
     layout.template_list("LUZESPECULAR_UL_surfaces", "", results, "rows", results, "active_row", rows=5)
     if 0 <= results.active_row < len(results.rows):
         chosen = results.rows[results.active_row]
+        found = _shown_spread(scene, chosen)
         column = layout.column(align=True)
-        text = iface_("{name}: {area:.2f} m², uniformity {uniformity:.2f}")
-        text = text.format(name=_side_name(chosen), area=chosen.area, uniformity=chosen.uniformity)
+        text = iface_("{name}: {area:.2f} m², uniformity {uniformity}")
+        uniformity = "–" if math.isnan(found.uniformity) else f"{found.uniformity:.2f}"
+        text = text.format(name=_side_name(chosen), area=chosen.area, uniformity=uniformity)
         column.label(text=text, translate=False)
-        values = {name: label(getattr(chosen, name)) for name in ("mean", "minimum", "maximum")}
-        text = iface_("Mean {mean} lx, from {minimum} to {maximum}").format(**values)
-        column.label(text=text, translate=False)
+        if not math.isnan(found.mean):
+            text = iface_("Mean {mean} {unit}, from {minimum} to {maximum}")
+            values = {name: label(value) for name, value in found._asdict().items()}
+            column.label(text=text.format(unit=display.unit_symbol(scene), **values), translate=False)
 
 
 def _draw_columns(layout: bpy.types.UILayout, name: str, *cells: str) -> None:
@@ -212,8 +225,12 @@ def _draw_columns(layout: bpy.types.UILayout, name: str, *cells: str) -> None:
 
 
 def _short(value: float) -> str:
-    """Return an illuminance in the width that a column has."""
-    return f"{value:.0f}" if value < 9_999.5 else f"{value / 1000.0:.1f}k"
+    """Return a value in the width that a column has."""
+    if math.isnan(value):
+        return "–"
+    if value >= 9_999.5:
+        return f"{value / 1000.0:.1f}k"
+    return f"{value:.0f}" if value >= 99.95 or value == 0.0 else f"{value:.1f}" if value >= 9.995 else f"{value:.2f}"
 
 
 CLASSES = (

@@ -1,5 +1,8 @@
 """How results are shown, and what the last run left behind."""
 
+import math
+from functools import partial
+
 import bpy
 from bpy.props import CollectionProperty, FloatVectorProperty, PointerProperty
 
@@ -145,16 +148,22 @@ class LuzDisplaySettings(bpy.types.PropertyGroup):
     )
 
 
+_Statistics = partial(FloatVectorProperty, size=len(QUANTITY_ITEMS), default=[math.nan] * len(QUANTITY_ITEMS))
+
+
 class LuzSurfaceRow(bpy.types.PropertyGroup):
-    """Statistics of one side of a surface; `name` is the surface."""
+    """Statistics of one side of a surface; `name` is the surface, numbers without an s are those of the total."""
 
     side: StringProperty()
     object_name: StringProperty()
     area: FloatProperty()
-    minimum: FloatProperty()
-    mean: FloatProperty()
-    maximum: FloatProperty()
-    uniformity: FloatProperty()
+    minima: _Statistics()
+    means: _Statistics()
+    maxima: _Statistics()
+    minimum: FloatProperty(get=lambda row: row.minima[0])
+    mean: FloatProperty(get=lambda row: row.means[0])
+    maximum: FloatProperty(get=lambda row: row.maxima[0])
+    uniformity: FloatProperty(get=lambda row: row.minima[0] / row.means[0] if row.means[0] > 0.0 else math.nan)
 
 
 class LuzNotice(bpy.types.PropertyGroup):

@@ -7,6 +7,7 @@ import re
 import bpy
 from bpy.app.translations import pgettext_rpt as rpt_
 
+from .in_blender import IN_BLENDER
 from .pt_br import KINDS, OPERATORS, SOLVER, STAGES, TEXTS
 
 CONTEXT = "LuzEspecular"
@@ -26,7 +27,7 @@ def table() -> dict[str, dict[tuple[str, str], str]]:
 
 
 def solver_message(said: Exception | str) -> str:
-    """Return what the solver refuses or remarks, in the language of the interface where it is known, else as it is.
+    """Return what the solver refuses or remarks, in Blender's words and the interface's language where they are known.
 
     The solver knows English alone: its message is matched with the templates that have translations, and what stood in
     the places of their {fields} goes into the translation. A lack of memory, which says nothing itself, is named.
@@ -47,7 +48,8 @@ def _known(said: str) -> str | None:
     for template, pattern in _PATTERNS:
         match = pattern.fullmatch(said)
         if match:
-            return rpt_(template).format(**{name: _known(value) or value for name, value in match.groupdict().items()})
+            fields = {name: _known(value) or value for name, value in match.groupdict().items()}
+            return rpt_(IN_BLENDER.get(template, template)).format(**fields)
     return None
 
 
@@ -56,7 +58,10 @@ def _pattern(template: str) -> re.Pattern[str]:
     return re.compile(fields.replace("(?P<more>.+?)", r"(?P<more>( \(.+\))?)"), re.DOTALL)
 
 
-_PATTERNS = tuple((template, _pattern(template)) for template in SOLVER)
+SAID_BY_SOLVER = (*(text for text in SOLVER if text not in IN_BLENDER.values()), *IN_BLENDER)
+"""Templates of all that is known of what the solver says."""
+
+_PATTERNS = tuple((template, _pattern(template)) for template in SAID_BY_SOLVER)
 
 
 def register() -> None:

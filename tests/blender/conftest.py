@@ -39,6 +39,7 @@ ROOMS = (
     "probe",
     "render_legend",
     "results_object",
+    "results_table",
     "scene_check",
     "session",
     "smoothing",
@@ -127,6 +128,26 @@ def addon_arrays(blender):
 def make(bpy):
     """Makers of scene contents."""
     return Maker(bpy)
+
+
+@pytest.fixture
+def solved(addon, bpy, make):
+    """A floor of 2 m with a canopy of 1 m over a quarter of it, solved in a moment; returns the scene's settings."""
+    make.square("Floor", size=2.0)
+    make.square("Canopy", height=0.5)
+    settings = make.quick(max_area=0.05)
+    assert bpy.ops.luzespecular.solve() == {"FINISHED"}
+    return settings
+
+
+@pytest.fixture
+def shading(bpy):
+    """The shading of the first 3D viewport."""
+    areas = [area for window in bpy.context.window_manager.windows for area in window.screen.areas]
+    views = [area for area in areas if area.type == "VIEW_3D"]
+    if not views:
+        pytest.skip("no viewport in this Blender")
+    return views[0].spaces.active.shading
 
 
 class Maker:

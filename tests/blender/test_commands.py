@@ -84,6 +84,7 @@ def test_json_holds_all_hours(addon, bpy, saved, tmp_path):
     assert noon["sun_altitude"] == pytest.approx(addon.light.sun_place(bpy.context.scene.luzespecular.site).altitude)
     top = next(row for row in noon["surfaces"] if (row["surface"], row["side"]) == ("Laje", "front"))
     assert top["mean_lx"] == pytest.approx(10_000.0, rel=1e-3)
+    assert top["sky_direct_mean_lx"] + top["interreflected_mean_lx"] == pytest.approx(top["mean_lx"])
     assert len(noon["faces"]["rows"]) == 8
     assert noon["balance_lm"]["entering"] > 0
     assert addon.commands.main(["solve", "--format", "json", "--no-faces", "--out", str(out)]) == 0

@@ -7,16 +7,6 @@ OPEN_SKY = 10_000.0
 
 
 @pytest.fixture
-def solved(addon, bpy, make):
-    """A floor of 2 m under a canopy of 1 m."""
-    make.square("Floor", size=2.0)
-    make.square("Canopy", height=0.5)
-    settings = make.quick(max_area=0.05)
-    assert bpy.ops.luzespecular.solve() == {"FINISHED"}
-    return settings
-
-
-@pytest.fixture
 def look(addon, bpy):
     """Look straight down, or up, at a place."""
 

@@ -4,16 +4,6 @@ import numpy as np
 import pytest
 
 
-@pytest.fixture
-def solved(addon, bpy, make):
-    """A floor half under a canopy, solved in a moment."""
-    make.square("Floor", size=2.0)
-    make.square("Canopy", height=0.5)
-    settings = make.quick(max_area=0.05)
-    assert bpy.ops.luzespecular.solve() == {"FINISHED"}
-    return settings
-
-
 def in_picture(bpy, legend):
     """Left, bottom, right and top of the legend in the picture, each 0 to 1, and its nearest distance."""
     from bpy_extras.object_utils import world_to_camera_view

@@ -1,5 +1,6 @@
 """Solving and writing back, as a script or the button does it: lux on faces, colours, views, and leaving no trace."""
 
+import csv
 import math
 
 import numpy as np
@@ -193,6 +194,34 @@ def test_components_add_up_on_the_fine_faces(addon, bpy, make, solve):
     np.testing.assert_allclose(total, lux(addon, part), rtol=1e-5, atol=1e-3)
 
 
+def test_table_knows_every_quantity(addon, bpy, make, solve, tmp_path):
+    make.square("Floor", size=2.0)
+    make.square("Canopy", height=0.5)
+    settings = make.quick()
+    solve()
+    part, spread = fine(addon, bpy), addon.results_table.spread
+    for number, row in enumerate(settings.results.rows):
+        side = addon.results_object.find(bpy.context.scene, row.side)
+        chosen = addon.mesh_arrays.read_face_values(side.data, addon.results_object.SURFACE, np.int32) == number
+        for quantity in addon.luz.tables.QUANTITIES:
+            values = lux(addon, side, addon.writeback.attribute_of(quantity))[chosen]
+            found = spread(row, quantity)
+            assert (found.minimum, found.maximum) == pytest.approx((values.min(), values.max())), quantity
+            assert found.minimum <= found.mean * 1.000001 and found.mean <= found.maximum * 1.000001
+        assert (row.minimum, row.mean, row.maximum) == spread(row, "illuminance")
+        assert math.isnan(spread(row, "error").mean)  # nobody has asked for it
+    assert part is not None
+    settings.display.quantity = "error"
+    known = {row.side: spread(row, "error").mean for row in settings.results.rows}
+    assert known["front"] > 0.0 and math.isnan(known["back"])
+    bpy.ops.luzespecular.save_table(filepath=str(tmp_path / "table.csv"))
+    with (tmp_path / "table.csv").open(encoding="utf-8-sig", newline="") as file:
+        saved = list(csv.DictReader(file))
+    for line, row in zip(saved, settings.results.rows, strict=True):
+        assert float(line["mean_lx"]) == pytest.approx(row.mean, rel=1e-5)
+        assert float(line["sky_direct_mean_lx"]) == pytest.approx(spread(row, "sky_direct").mean, rel=1e-5)
+
+
 def test_results_are_shown_at_once(addon, bpy, make, solve):
     floor = make.square("Floor")
     make.quick()
@@ -298,36 +327,20 @@ def test_clear_leaves_no_trace(addon, bpy, make, solve):
     assert everything(bpy) == before
 
 
-def test_clear_restores_the_viewport(addon, bpy, make, solve):
-    shadings = [
-        area.spaces.active.shading
-        for window in bpy.context.window_manager.windows
-        for area in window.screen.areas
-        if area.type == "VIEW_3D"
-    ]
-    if not shadings:
-        pytest.skip("no viewport in this Blender")
-    shadings[0].light, shadings[0].color_type, shadings[0].type = "MATCAP", "RANDOM", "MATERIAL"
+def test_clear_restores_the_viewport(addon, bpy, make, solve, shading):
+    shading.light, shading.color_type, shading.type = "MATCAP", "RANDOM", "MATERIAL"
     make.square("Floor")
     make.quick()
     solve()
-    assert shadings[0].type == "SOLID"
+    assert shading.type == "SOLID"
     bpy.ops.luzespecular.clear_results()
-    assert shadings[0].type == "MATERIAL"
-    shadings[0].type = "SOLID"
-    assert (shadings[0].light, shadings[0].color_type) == ("MATCAP", "RANDOM")
+    assert shading.type == "MATERIAL"
+    shading.type = "SOLID"
+    assert (shading.light, shading.color_type) == ("MATCAP", "RANDOM")
 
 
-def test_viewports_follow_undo_and_redo(addon, bpy, make, solve):
-    shadings = [
-        area.spaces.active.shading
-        for window in bpy.context.window_manager.windows
-        for area in window.screen.areas
-        if area.type == "VIEW_3D"
-    ]
-    if not shadings:
-        pytest.skip("no viewport in this Blender")
-    scene, shading = bpy.context.scene, shadings[0]
+def test_viewports_follow_undo_and_redo(addon, bpy, make, solve, shading):
+    scene = bpy.context.scene
     shading.light, shading.color_type = "MATCAP", "RANDOM"
     floor = make.square("Floor")
     make.quick()
@@ -382,7 +395,10 @@ def test_what_the_solver_finds_odd_is_told(addon, bpy, make, solve):
 
 @pytest.mark.parametrize(
     ("refusal", "told"),
-    [("SceneError", "max_area 1e-09 m² would cut"), ("MemoryError", "There is not enough memory: choose a coarser")],
+    [
+        ("SceneError", "A largest face of 1e-09 m² would cut"),
+        ("MemoryError", "There is not enough memory: choose a coarser"),
+    ],
 )
 def test_what_the_solver_cannot_do_is_told_and_changes_nothing(addon, bpy, make, monkeypatch, refusal, told):
     def no_memory(*_):

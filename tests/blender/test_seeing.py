@@ -8,16 +8,6 @@ import pytest
 OPEN_SKY = 10_000.0
 
 
-@pytest.fixture
-def solved(addon, bpy, make):
-    """A floor half under a canopy, solved in a moment."""
-    make.square("Floor", size=2.0)
-    make.square("Canopy", height=0.5)
-    settings = make.quick(max_area=0.05)
-    assert bpy.ops.luzespecular.solve() == {"FINISHED"}
-    return settings
-
-
 def fine(addon, bpy):
     return addon.results_object.find(bpy.context.scene)
 

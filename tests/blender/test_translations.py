@@ -136,7 +136,7 @@ def solver_messages():
 def test_the_solver_still_says_what_is_translated(addon):
     said = set(solver_messages())
     assert len(said) > 50
-    unknown = [text for text in addon.translations.SOLVER if re.sub(r"{\w+}", "{}", text) not in said]
+    unknown = [text for text in addon.translations.SAID_BY_SOLVER if re.sub(r"{\w+}", "{}", text) not in said]
     assert not unknown, "the solver's messages have changed: bring translations/pt_br/solver.py in step"
 
 
@@ -175,6 +175,17 @@ def test_findings_of_the_scene_check_are_translated(addon, monkeypatch):
         if finding.remedy in translations.solver_message(said) or translations.solver_message(said) == said
     ]
     assert not foreign
+
+
+def test_remedies_speak_of_blenders_menus(addon):
+    translations = addon.translations
+    (finding,) = luzespecular.check(FAULTS["all walls turned over"][0]())
+    assert "Mesh > Normals > Recalculate Inside" in translations.solver_message(str(finding))
+    for template, words in translations.IN_BLENDER.items():
+        assert template not in translations.SOLVER
+        assert words in translations.SOLVER, words
+        assert re.findall(r"{\w+}", template) == re.findall(r"{\w+}", words)
+        assert "max_area" not in words and "vertices)" not in words
 
 
 def test_what_is_added_to_a_finding_is_translated(addon, monkeypatch):

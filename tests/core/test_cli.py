@@ -82,6 +82,13 @@ def test_solves_hours_by_the_clock_and_writes_everything(scene, tmp_path, capsys
     assert set(rows) == {("Chão", "front"), ("wall", "front"), ("Laje", "front"), ("Laje", "back")}
     assert float(rows["Chão", "front"]["mean_lx"]) == pytest.approx(expected.mean("Chão"), rel=1e-6)
     assert {row["time"] for row in rows.values()} == {"clock"}
+    floor = rows["Chão", "front"]
+    for quantity, values in (("initial", expected.initial), *expected.components.items()):
+        faces = expected.faces_of("Chão")
+        of_floor, mean = values[faces], np.average(values[faces], weights=expected.areas[faces])
+        assert float(floor[f"{quantity}_mean_lx"]) == pytest.approx(mean, rel=1e-6)
+        assert float(floor[f"{quantity}_minimum_lx"]) == pytest.approx(of_floor.min(), rel=1e-6)
+        assert float(floor[f"{quantity}_maximum_lx"]) == pytest.approx(of_floor.max(), rel=1e-6)
 
     with np.load(out / "casa à luz_2026-12-21_12h30.npz", allow_pickle=False) as arrays:
         np.testing.assert_allclose(arrays["illuminance"], expected.illuminance, rtol=1e-6)

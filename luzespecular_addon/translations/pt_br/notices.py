@@ -44,7 +44,7 @@ TEXTS = {
         "O objeto '{name}' não tem face com área e fica de fora: confira sua escala, ou defina seu papel como Ignorar"
     ),
     "Object '{name}': {count} faces without area are left out; Merge by Distance mends it": (
-        "Objeto '{name}': {count} faces sem área ficam de fora; Mesclar por distância corrige isso"
+        "Objeto '{name}': {count} faces sem área ficam de fora; Fundir por distância corrige isso"
     ),
     "Object '{name}' is a solid pane: light passes two of its faces, and the glass's mirror reflection is "
     "neglected. Model the pane as single faces for exact results": (

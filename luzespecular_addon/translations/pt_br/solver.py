@@ -100,7 +100,7 @@ SOLVER = {
         "Material: a transmitância regular {transmittance} é maior que a de {clearest} que "
         "um vidro de índice de refração {number} pode ter; reduza um dos dois"
     ),
-    "max_area {area} m² would cut the scene into some {count} faces, more than {most}; "
+    "A largest face of {area} m² would cut the scene into some {count} faces, more than {most}; "
     "raise it to {enough} m² or more": (
         "A maior face de {area} m² dividiria a cena em umas {count} faces, mais que {most}; "
         "aumente-a para {enough} m² ou mais"
@@ -108,10 +108,10 @@ SOLVER = {
     "bands must lie between 2 and {most}, not {number}; 60 is usual": (
         "As faixas devem ser de 2 a {most}, não {number}; 60 é o usual"
     ),
-    "The scene needs {needed} GB for {receivers} receivers, more than the {memory} GB "
-    "of 'memory'; raise max_area, lower bands, or allow more memory": (
-        "A cena precisa de {needed} GB para {receivers} receptores, mais que os {memory} GB permitidos; "
-        "aumente a maior face, reduza as faixas, ou permita mais memória"
+    "The scene needs {needed} GB for {receivers} receivers, more than the {memory} GB that it may take; "
+    "raise Largest Face or lower Bands (Accuracy: Expert), or choose a coarser fineness": (
+        "A cena precisa de {needed} GB para {receivers} receptores, mais que os {memory} GB que pode tomar; "
+        "aumente Maior face ou reduza Faixas (Exatidão: Especialista), ou escolha um refinamento menor"
     ),
     "Light multiplies without end: a closed scene of diffuse reflectance 1 has no steady state; "
     "lower the reflectances below 1": (
@@ -136,17 +136,22 @@ SOLVER = {
     "remove one, or move them apart": "retire uma, ou afaste-as",
     "{count} more pairs of surfaces lie on one another": "Mais {count} pares de superfícies estão uma sobre a outra",
     "All surfaces look outward and none sees another": "Todas as superfícies olham para fora e nenhuma vê outra",
-    "if this is a room seen from inside, turn its normals (reverse the order of the vertices)": (
-        "se este é um ambiente visto de dentro, vire suas normais (inverta a ordem dos vértices)"
+    "if this is a room seen from inside, turn its normals (Edit Mode: Mesh > Normals > Recalculate Inside)": (
+        "se este é um ambiente visto de dentro, vire suas normais (modo de edição: Malha > Normais > Recalcular para "
+        "dentro)"
     ),
     "Surface '{name}': its faces look to different sides: across {count} edges neighbours are turned over": (
         "Superfície '{name}': suas faces olham para lados diferentes: em {count} arestas as vizinhas estão viradas"
     ),
-    "recalculate its normals": "recalcule as normais",
+    "recalculate its normals (Edit Mode: Mesh > Normals > Recalculate Outside)": (
+        "recalcule as normais (modo de edição: Malha > Normais > Recalcular para fora)"
+    ),
     "Surface '{name}': {count} faces without area left out": (
         "Superfície '{name}': {count} faces sem área deixadas de fora"
     ),
-    "merge their vertices or remove them": "una seus vértices ou retire-as",
+    "merge their vertices (Edit Mode: Mesh > Merge > By Distance) or remove them": (
+        "una seus vértices (modo de edição: Malha > Fundir > Por distância) ou retire-as"
+    ),
     "Surface '{name}': {count} faces that are not flat cut into triangles": (
         "Superfície '{name}': {count} faces que não são planas divididas em triângulos"
     ),
@@ -154,21 +159,25 @@ SOLVER = {
     "Surfaces '{one}' and '{two}' lie side by side in one plane and look to opposite sides": (
         "As superfícies '{one}' e '{two}' estão lado a lado no mesmo plano e olham para lados opostos"
     ),
-    "turn the normals of one of them": "vire as normais de uma delas",
+    "turn the normals of one of them (Edit Mode: Mesh > Normals > Flip)": (
+        "vire as normais de uma delas (modo de edição: Malha > Normais > Virar)"
+    ),
     "Surface '{name}' has its back to {others} and its front sees nothing{more}": (
         "A superfície '{name}' está de costas para {others} e sua frente não vê nada{more}"
     ),
     " (of its {every} planes the {some} largest were looked at, others may be alike)": (
         " (de seus {every} planos foram vistos os {some} maiores, outros podem ser iguais)"
     ),
-    "turn its normals (reverse the order of the vertices), or make it two-sided": (
-        "vire suas normais (inverta a ordem dos vértices), ou dê-lhe dois lados"
+    "turn its normals (Edit Mode: Mesh > Normals > Flip), or set its Lit Sides to Both": (
+        "vire suas normais (modo de edição: Malha > Normais > Virar), ou escolha Ambos em Lados com luz"
     ),
     "Surface '{name}' is seen from behind by {others}, where it is black: it has one side only{more}": (
         "A superfície '{name}' é vista por trás por {others}, onde é preta: só tem um lado{more}"
     ),
-    "turn its normals, make it two-sided, or give it a second surface behind": (
-        "vire suas normais, dê-lhe dois lados, ou ponha uma segunda superfície atrás"
+    "turn its normals (Edit Mode: Mesh > Normals > Flip), set its Lit Sides to Both, or give it a thickness "
+    "(Solidify modifier)": (
+        "vire suas normais (modo de edição: Malha > Normais > Virar), escolha Ambos em Lados com luz, ou dê-lhe "
+        "espessura (modificador Solidificar)"
     ),
     "Between '{one}' and '{two}' is a gap up to {width} mm wide and {length} m long, through which light leaks": (
         "Entre '{one}' e '{two}' há uma fresta de até {width} mm de largura e {length} m de comprimento, por onde vaza "
@@ -177,7 +186,9 @@ SOLVER = {
     "Within '{name}' is a gap up to {width} mm wide and {length} m long, through which light leaks": (
         "Em '{name}' há uma fresta de até {width} mm de largura e {length} m de comprimento, por onde vaza luz"
     ),
-    "move their edges together, or merge their vertices": "junte suas arestas, ou una seus vértices",
+    "move their edges together, or join the objects and merge their vertices (Edit Mode: Mesh > Merge > By Distance)": (
+        "junte suas arestas, ou una os objetos e seus vértices (modo de edição: Malha > Fundir > Por distância)"
+    ),
     "{count} more pairs of surfaces have gaps between them": "Mais {count} pares de superfícies têm frestas entre si",
     "Surface '{name}' has {count} faces that are tiny or thinner than a hair": (
         "A superfície '{name}' tem {count} faces minúsculas ou mais finas que um cabelo"
@@ -185,8 +196,8 @@ SOLVER = {
     "Surface '{name}' has {count} % of all polygons, and {share} % of the area": (
         "A superfície '{name}' tem {count} % de todos os polígonos, e {share} % da área"
     ),
-    "simplify its mesh: it takes much time and gives little light": (
-        "simplifique sua malha: ela toma muito tempo e dá pouca luz"
+    "simplify its mesh (Decimate modifier): it takes much time and gives little light": (
+        "simplifique sua malha (modificador Decimar): ela toma muito tempo e dá pouca luz"
     ),
     "The scene is {size} m across and its surfaces mostly {length} m long": (
         "A cena tem {size} m de ponta a ponta, e suas superfícies em geral {length} m de comprimento"
@@ -217,8 +228,8 @@ SOLVER = {
         "Entre {surfaces} um olhar é espelhado {mean} vezes em média e até {most} vezes, de modo que olhar leva umas "
         "{factor} vezes o tempo sem espelhos"
     ),
-    "lower their reflectances, turn them a little, or raise specular_cutoff": (
-        "reduza suas refletâncias, ou gire-os um pouco"
+    "lower their reflectances, turn them a little, or raise Specular Cut-off (Accuracy: Expert)": (
+        "reduza suas refletâncias, gire-os um pouco, ou aumente Corte especular (Exatidão: Especialista)"
     ),
     "Between {surfaces} light is mirrored without end: they enclose a space and absorb nothing": (
         "Entre {surfaces} a luz é espelhada sem fim: fecham um espaço e nada absorvem"
