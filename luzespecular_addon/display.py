@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -221,20 +221,38 @@ def apply_view(scene: bpy.types.Scene) -> None:
     settings = scene.luzespecular.display
     show_fine = shows_fine(scene)
     shown_sides = {"front", "back"} if settings.show_backs else {"front"}
-    standing_for = {row.object_name for row in scene.luzespecular.results.rows} if show_fine else set()
     for object_ in scene.objects:
         role = object_.luzespecular
         if role.results_side in results_object.NAMES:
             _set_hidden(scene, object_, not (show_fine and role.results_side in shown_sides))
-        elif object_.name in standing_for and not role.hidden_for_results:
+        elif show_fine and role.has_fine_faces and not role.hidden_for_results:
             if _set_hidden(scene, object_, True):
                 role.hidden_for_results = True
-        elif role.hidden_for_results and object_.name not in standing_for:
-            _set_hidden(scene, object_, False)
+        elif role.hidden_for_results and not (show_fine and role.has_fine_faces):
+            for sharing in object_.users_scene:
+                _set_hidden(sharing, object_, False)
             role.property_unset("hidden_for_results")
     if has_results(scene):
         _shade_viewports(scene)
     false_colour.apply(scene, current_scale(scene))
+
+
+def stand_for(scene: bpy.types.Scene, names: Container[str]) -> None:
+    """Mark the objects that the fine faces stand for; marks go with them when they are renamed."""
+    for object_ in scene.objects:
+        if object_.luzespecular.has_fine_faces != (object_.name in names):
+            if object_.name in names:
+                object_.luzespecular.has_fine_faces = True
+            else:
+                object_.luzespecular.property_unset("has_fine_faces")
+
+
+def settle_objects(scene: bpy.types.Scene) -> None:
+    """Show the user's objects again where the fine faces that stood for them were deleted by hand."""
+    # Asking what was never set would leave an empty group of settings.
+    if scene.luzespecular.is_property_set("results") and not results_object.all_of(scene):
+        if any(object_.luzespecular.hidden_for_results for object_ in scene.objects):
+            apply_view(scene)
 
 
 def clear(scene: bpy.types.Scene) -> None:
@@ -246,6 +264,7 @@ def clear(scene: bpy.types.Scene) -> None:
         writeback.clear(mesh)
     work_planes.forget_values(scene)
     scene.luzespecular.results.rows.clear()
+    stand_for(scene, ())
     apply_view(scene)
     _restore_viewports(scene)
     scene.luzespecular.property_unset("results")
@@ -307,7 +326,15 @@ def _shade_viewports(scene: bpy.types.Scene) -> None:
             entry.backface_culling = shading.show_backface_culling
         shading.type, shading.light, shading.color_type = "SOLID", "FLAT", "VERTEX"
         shading.show_backface_culling = True
+        _take_along(scene, area.spaces.active)
         area.tag_redraw()
+
+
+def _take_along(scene: bpy.types.Scene, space: bpy.types.SpaceView3D) -> None:
+    """Have our objects in a local view too: what they stand for is hidden there."""
+    if space.local_view is not None:
+        for object_ in results_object.all_of(scene):
+            object_.local_view_set(space, True)
 
 
 def _restore_viewports(scene: bpy.types.Scene) -> None:

@@ -5,6 +5,7 @@ Each surface remembers which faces of the user's own mesh its triangles come fro
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import bpy
@@ -38,12 +39,15 @@ class ExportedSurface:
     own_faces : (t,) int32 or None
         Face of the object's own mesh for each triangle handed over, -1 where there is none; None where the mesh cannot
         hold results of its own.
+    own_count : int
+        Faces of that mesh.
     """
 
     name: str
     object_name: str
     receiver: bool
     own_faces: NDArray[np.int32] | None
+    own_count: int = 0
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,10 @@ class Export:
         Metres per Blender unit.
     fingerprint : str
         `placements.fingerprint` of the scene.
+    moving : tuple of str
+        Objects that keyframes move or change.
+    frame : int
+        The frame that the scene was read at.
     """
 
     scene: luz.Scene
@@ -75,6 +83,8 @@ class Export:
     luminous: bool
     unit_scale: float
     fingerprint: str
+    moving: tuple[str, ...]
+    frame: int
 
 
 def export_scene(context: bpy.types.Context) -> Export:
@@ -91,7 +101,11 @@ def export_scene(context: bpy.types.Context) -> Export:
     builder = _Builder()
     for part in parts:
         builder.add(part)
+    moving = tuple(object_.name for object_ in objects if object_.type in participants.MESH_TYPES and _moves(object_))
     notices = [*_left_out(objects, context.scene.luzespecular.site), *builder.notices()]
+    if moving:
+        text = rpt_("Keyframes move or change {names}: the results are those of frame {frame}")
+        notices.append(Notice("INFO", text.format(names=_listed(moving), frame=context.scene.frame_current), moving))
     stop_on_errors(notices)
     return Export(
         builder.scene,
@@ -101,6 +115,8 @@ def export_scene(context: bpy.types.Context) -> Export:
         builder.luminous,
         placements.unit_scale(context.scene),
         placements.fingerprint(parts),
+        moving,
+        context.scene.frame_current,
     )
 
 
@@ -108,6 +124,15 @@ def current_fingerprint(context: bpy.types.Context) -> str:
     """Return the fingerprint of the scene as it is now."""
     objects = participants.rendered_objects(context.view_layer)
     return placements.fingerprint(placements.collect(context, objects, track_faces=False))
+
+
+def _moves(object_: bpy.types.Object | None) -> bool:
+    """Whether keyframes move an object or one of its parents, or change its shape."""
+    if object_ is None:
+        return False
+    owners = (object_, object_.data, getattr(object_.data, "shape_keys", None))
+    animated = (getattr(owner, "animation_data", None) for owner in owners)
+    return any(one is not None and (one.action or len(one.nla_tracks)) for one in animated) or _moves(object_.parent)
 
 
 def _in_edit_mode(objects: list[bpy.types.Object]) -> list[Notice]:
@@ -168,8 +193,10 @@ class _Builder:
         except luz.SceneError as error:
             self._notices.append(Notice("ERROR", solver_message(error), (part.object_name,)))
             return
-        own_faces = None if part.own_faces is None else part.own_faces[part.polygons[sound]]
-        self.surfaces.append(ExportedSurface(part.name, part.object_name, part.receiver, own_faces))
+        own_faces, own_count = None, 0
+        if part.own_faces is not None:
+            own_faces, own_count = part.own_faces[part.polygons[sound]], mesh_size(part.object_name)
+        self.surfaces.append(ExportedSurface(part.name, part.object_name, part.receiver, own_faces, own_count))
         if part.receiver and own_faces is None and part.kind == "MESH":
             self._sharing.append(part.object_name)
         if optics.diffuse_reflectance > 0.0:
@@ -238,7 +265,13 @@ class _Builder:
         return optics.shared_by_two_faces()
 
 
-def _listed(names: list[str]) -> str:
+def mesh_size(object_name: str) -> int:
+    """Return the number of faces of an object's own mesh; 0 where it has none, or is gone."""
+    object_ = bpy.data.objects.get(object_name)
+    return len(object_.data.polygons) if object_ is not None and object_.type == "MESH" else 0
+
+
+def _listed(names: Sequence[str]) -> str:
     return ", ".join(names[:_NAMES_LISTED]) + (" …" if len(names) > _NAMES_LISTED else "")
 
 

@@ -30,6 +30,8 @@ def _scene_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> No
         light = scene.luzespecular.site.sun_object
         if any(update.is_updated_transform and update.id.original == light for update in depsgraph.updates):
             live.request(scene)
+    if depsgraph.id_type_updated("COLLECTION"):
+        display.settle_objects(scene)
     render_legend.follow(scene, depsgraph)
 
 

@@ -132,13 +132,23 @@ class Live:
         except BadInput as error:
             _tell(str(error))
             return
+        exported = self._study.export
+        remark = ""
+        if exported.moving and scene.frame_current != exported.frame:
+            if not self.rendering and not self._verify():
+                return
+            if self.rendering:  # one cannot look then
+                text = iface_("Keyframes move or change {names}: the results are those of frame {frame}")
+                remark = text.format(names=", ".join(exported.moving), frame=exported.frame)
         if planned.daylight == self._study.daylight and not (self._quick and whole):
-            _tell("")
+            _tell(remark)
             return
         self.stop()
         self._start(planned, quick=not whole)
         self._job.wait()
         self._conclude(scene, looks=not (self.rendering or self._is_dear))  # while rendering one cannot look
+        if remark:
+            _tell(remark)
         if self._quick:
             request(scene)
 

@@ -165,6 +165,7 @@ def finish(
     if scene is None or not is_current(context, study):
         raise refuse(rpt_("The scene changed while it was solved, so the results were thrown away: solve again"))
     notices = show(scene, study, result, readings)
+    display.stand_for(scene, {surface.object_name for surface in study.export.surfaces if surface.receiver})
     display.apply_view(scene)
     return notices
 

@@ -19,7 +19,7 @@ from .. import core as luz
 from ..core import tables
 from . import errors, mesh_arrays, participants, placements
 from .choices import QUANTITY_ITEMS
-from .export import Export, ExportedSurface
+from .export import Export, ExportedSurface, mesh_size
 from .notices import Notice, about
 
 ILLUMINANCE = "illuminance"
@@ -83,16 +83,20 @@ def refusals(objects: Iterable[bpy.types.Object]) -> list[Notice]:
 
 
 def own_results(export: Export, result: luz.Result) -> list[OwnResults]:
-    """Return the results of each user mesh that can hold them: means over all that became of a face."""
+    """Return the results of each user mesh that can hold them: means over all that became of a face.
+
+    Objects that are gone or renamed, and meshes that have other faces by now, get none.
+    """
     by_object: dict[str, list[ExportedSurface]] = {}
     for surface in export.surfaces:
-        if surface.receiver and surface.own_faces is not None:
+        as_it_was = surface.own_faces is not None and mesh_size(surface.object_name) == surface.own_count
+        if surface.receiver and as_it_was:
             by_object.setdefault(surface.object_name, []).append(surface)
     fronts = {attribute_of(name): values for name, values in quantities(result, "front").items()}
     backs = {} if result.back is None else {ILLUMINANCE_BACK: result.back.illuminance}
     results = []
     for name, surfaces in by_object.items():
-        count = len(bpy.data.objects[name].data.polygons)
+        count = surfaces[0].own_count
         values = _means(surfaces, result, fronts, count)
         # Backs that nobody lit are no results.
         values |= {

@@ -65,10 +65,14 @@ class InBackground:
         except Exception:
             self._tidy(context)  # else all buttons would stay grey
             raise
-        if not self._task.finished:
+        if not self._task.finished or self.must_wait(context):
             return {"PASS_THROUGH"}
         self._tidy(context)
         return self.conclude(context, self._task)
+
+    def must_wait(self, _context) -> bool:
+        """Whether what is done cannot be brought to its end yet."""
+        return False
 
     def execute(self, context):
         """Work at once, for scripts."""

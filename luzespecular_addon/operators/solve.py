@@ -58,6 +58,13 @@ class LUZESPECULAR_OT_solve(InBackground, bpy.types.Operator):
         self.report({"INFO"}, rpt_("Solved: {title}; {count} faces").format(title=job.study.title, count=count))
         return {"FINISHED"}
 
+    def must_wait(self, context) -> bool:
+        """Results cannot be written in Edit Mode; they wait until the user leaves it."""
+        waits = context.mode.startswith("EDIT") and not context.window_manager.luzespecular.cancel
+        if waits and self._task.error is None:
+            context.workspace.status_text_set(iface_("LuzEspecular: solved; leave Edit Mode (Tab) to see the results"))
+        return waits and self._task.error is None
+
     def show_progress(self, context, job: Job) -> None:
         """Tell stage, share and time left."""
         state = context.window_manager.luzespecular

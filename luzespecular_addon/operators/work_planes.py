@@ -90,9 +90,10 @@ def _floor_objects(context) -> list[bpy.types.Object]:
 
 
 def _triangles(context, objects: list[bpy.types.Object]) -> np.ndarray:
-    """Return the triangles of objects in world space [m], (t, 3, 3)."""
+    """Return the lit sides of objects as triangles in world space [m], (t, 3, 3)."""
     parts = placements.collect(context, objects, track_faces=False)
-    found = [part.vertices[part.faces] for part in parts]
+    fronts = [(part, part.vertices[part.faces]) for part in parts]
+    found = [corners for _, corners in fronts] + [corners[:, ::-1] for part, corners in fronts if part.two_sided]
     return np.concatenate(found) if found else np.zeros((0, 3, 3))
 
 

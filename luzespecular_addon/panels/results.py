@@ -14,6 +14,9 @@ from ..legend import label, title
 from ..translations import CONTEXT
 from .drawing import Sidebar, draw_notices, draw_wrapped
 
+_MOST_ROWS = 6
+"""Of the table, before it scrolls."""
+
 
 class LUZESPECULAR_UL_surfaces(bpy.types.UIList):
     """Rows of the results table."""
@@ -198,8 +201,10 @@ def _draw_table(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
     # In our context, since Blender's own words for these are too long for a column.
     heads = (iface_("Min", CONTEXT), iface_("Mean", CONTEXT), iface_("Max", CONTEXT))
     _draw_columns(row, iface_("Surface", CONTEXT), *heads)
-    row.label(text="", icon="BLANK1")  # as wide as the list's scroll bar
-    layout.template_list("LUZESPECULAR_UL_surfaces", "", results, "rows", results, "active_row", rows=5)
+    if len(results.rows) > _MOST_ROWS:
+        row.label(text="", icon="BLANK1")  # as wide as the list's scroll bar
+    rows = min(max(len(results.rows), 2), _MOST_ROWS)
+    layout.template_list("LUZESPECULAR_UL_surfaces", "", results, "rows", results, "active_row", rows=rows)
     if 0 <= results.active_row < len(results.rows):
         chosen = results.rows[results.active_row]
         found = _shown_spread(scene, chosen)
@@ -208,10 +213,9 @@ def _draw_table(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
         uniformity = "–" if math.isnan(found.uniformity) else f"{found.uniformity:.2f}"
         text = text.format(name=_side_name(chosen), area=chosen.area, uniformity=uniformity)
         column.label(text=text, translate=False)
-        if not math.isnan(found.mean):
-            text = iface_("Mean {mean} {unit}, from {minimum} to {maximum}")
-            values = {name: label(value) for name, value in found._asdict().items()}
-            column.label(text=text.format(unit=display.unit_symbol(scene), **values), translate=False)
+        text = iface_("Mean {mean} {unit}, from {minimum} to {maximum}")
+        values = {name: "–" if math.isnan(value) else label(value) for name, value in found._asdict().items()}
+        column.label(text=text.format(unit=display.unit_symbol(scene), **values), translate=False)
 
 
 def _draw_columns(layout: bpy.types.UILayout, name: str, *cells: str) -> None:

@@ -46,10 +46,10 @@ class LUZESPECULAR_PT_solve(Sidebar, bpy.types.Panel):
 def _draw_progress(layout: bpy.types.UILayout, state: bpy.types.PropertyGroup) -> None:
     row = layout.row(align=True)
     share = f"{100.0 * state.fraction:.0f} %  " if state.fraction else ""
-    row.progress(factor=state.fraction, text=share + iface_(state.stage))
+    row.progress(factor=state.fraction, text=share + iface_(state.stage or "starting"))
     row.operator("luzespecular.cancel", text="", icon="CANCEL")
     if state.seconds_left < 0.0:
-        layout.label(text="Esc cancels", icon="EVENT_ESC")
+        layout.label(text="Cancel", icon="EVENT_ESC")
     else:
         layout.label(text=time_left(state.seconds_left), icon="TIME", translate=False)
 

@@ -35,6 +35,7 @@ class LuzObjectSettings(bpy.types.PropertyGroup):
     is_results: BoolProperty(options={"HIDDEN"})
     results_side: StringProperty(options={"HIDDEN"})
     state: StringProperty(options={"HIDDEN"})
+    has_fine_faces: BoolProperty(options={"HIDDEN"})
     hidden_for_results: BoolProperty(options={"HIDDEN"})
     in_renders_for_results: BoolProperty(options={"HIDDEN"})
     off_camera_for_results: BoolProperty(options={"HIDDEN"})

@@ -1,5 +1,6 @@
 """Live results: other hours, dates and skies on a transfer that is ready, by frames, by the timer, in renders."""
 
+import math
 import threading
 import time
 
@@ -145,6 +146,36 @@ def dragging(addon, bpy, monkeypatch):
                     live._job.wait()
 
     return Dragging()
+
+
+def test_a_shade_that_keyframes_move_is_told(addon, bpy, courtyard, caplog):
+    wall, scene = bpy.data.objects["Wall"], bpy.context.scene
+    for frame, height in ((1, 0.0), (11, 2.0)):
+        wall.location.z = height
+        wall.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    bpy.ops.luzespecular.solve()
+    assert "Wall: the results are those of frame 1" in courtyard.results.notices[-1].text
+    scene.frame_set(1)
+    assert addon.live.current.follows(scene)
+    addon.live.current.rendering = True
+    scene.frame_set(6)
+    assert "Wall: the results are those of frame 1" in caplog.text
+    addon.live.current.rendering = False
+    scene.frame_set(11)
+    assert not addon.live.current.follows(scene)
+    assert "The scene changed" in caplog.text
+
+
+def test_objects_renamed_or_gone_while_one_drags_do_no_harm(addon, bpy, courtyard, dragging):
+    floor, before = bpy.data.objects["Floor"], means(courtyard)
+    floor.name = "Piso"
+    bpy.data.objects.remove(bpy.data.objects["Wall"])
+    addon.live.current._verified_at = math.inf  # no look at the scene is due
+    dragging.drag(hour=10.0)
+    assert means(courtyard) != before
+    courtyard.display.show_backs = False
+    assert floor.hide_get()  # the fine faces stand for it still
 
 
 def test_dragging_shows_and_rest_settles(addon, bpy, courtyard, dragging):

@@ -521,6 +521,61 @@ def test_results_survive_saving_and_loading(addon, bpy, make, solve, tmp_path):
     assert "illuminance" not in bpy.data.objects["Floor"].data.attributes
 
 
+def test_errors_of_meshes_edited_meanwhile_are_not_written(addon, bpy, make, solve):
+    floor, slab = make.square("Floor"), make.square("Slab", height=1.0)
+    settings = make.quick()
+    solve()
+    floor.data.clear_geometry()
+    floor.data.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)] * 3)
+    settings.display.quantity = "error"
+    assert "illuminance_error" not in floor.data.attributes
+    assert "illuminance_error" in slab.data.attributes
+    slab.name = "Laje"
+    settings.display.quantity = "illuminance"
+    solve()
+    settings.display.quantity = "error"
+    assert np.isfinite(lux(addon, slab, "illuminance_error")).all()
+
+
+def test_objects_show_again_where_the_fine_faces_are_deleted(addon, bpy, make, solve):
+    floor = make.square("Floor")
+    make.quick()
+    solve()
+    assert floor.hide_get()
+    with bpy.context.temp_override(selected_objects=addon.results_object.all_of(bpy.context.scene)):
+        bpy.ops.object.delete()
+    bpy.context.view_layer.update()
+    assert not addon.results_object.all_of(bpy.context.scene)
+    assert not floor.hide_get()
+    bpy.ops.luzespecular.clear_results()
+    assert "illuminance" not in floor.data.attributes
+
+
+def test_renamed_objects_stay_hidden_behind_their_fine_faces(addon, bpy, make, solve):
+    floor = make.square("Floor")
+    settings = make.quick()
+    solve()
+    floor.name = "Piso"
+    settings.display.view = "OWN"
+    assert not floor.hide_get()
+    settings.display.view = "RESULTS"
+    assert floor.hide_get()
+
+
+def test_scenes_that_share_objects_clear_for_both(addon, bpy, make, solve):
+    floor = make.square("Floor")
+    make.quick()
+    solve()
+    first = bpy.context.scene
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        bpy.ops.scene.new(type="LINK_COPY")
+    second = next(scene for scene in bpy.data.scenes if scene != first)
+    with bpy.context.temp_override(scene=second, view_layer=second.view_layers[0]):
+        bpy.ops.luzespecular.clear_results()
+    assert not floor.hide_get(view_layer=first.view_layers[0])
+    assert not floor.hide_get(view_layer=second.view_layers[0])
+
+
 def test_scenes_of_one_file_do_not_meddle(addon, bpy, make, solve):
     first = make.square("Floor")
     make.quick()

@@ -212,6 +212,16 @@ def test_selected_objects_choose_the_floor(addon, bpy, make):
     assert points[:, 2] == pytest.approx(1.75)
 
 
+def test_the_floor_of_an_open_box_is_inside_whatever_its_normals(addon, bpy, make):
+    box = make.cube("Room", size=3.0)
+    box.data.clear_geometry()
+    corners = [(x, y, z) for z in (0, 3) for y in (0, 3) for x in (0, 3)]
+    box.data.from_pydata(corners, [], [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (0, 4, 6, 2), (1, 3, 7, 5)])
+    assert bpy.ops.luzespecular.add_work_plane() == {"FINISHED"}
+    (plane,) = addon.work_planes.all_of(bpy.context.scene)
+    assert [vertex.co.z for vertex in plane.data.vertices] == pytest.approx([0.75] * len(plane.data.vertices))
+
+
 def test_refusals_name_the_remedy(addon, bpy, make):
     make.square("Floor", size=50.0)
     with pytest.raises(RuntimeError, match="choose a larger spacing"):

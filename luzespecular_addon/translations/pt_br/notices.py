@@ -43,6 +43,9 @@ TEXTS = {
     "Object '{name}' has no face with an area and is left out: check its scale, or set its role to Ignore": (
         "O objeto '{name}' não tem face com área e fica de fora: confira sua escala, ou defina seu papel como Ignorar"
     ),
+    "Keyframes move or change {names}: the results are those of frame {frame}": (
+        "Quadros-chave movem ou mudam {names}: os resultados são os do quadro {frame}"
+    ),
     "Object '{name}': {count} faces without area are left out; Merge by Distance mends it": (
         "Objeto '{name}': {count} faces sem área ficam de fora; Fundir por distância corrige isso"
     ),

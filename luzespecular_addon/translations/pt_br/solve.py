@@ -20,6 +20,9 @@ TEXTS = {
     "Leave Edit Mode first (Tab)": "Saia antes do modo de edição (Tab)",
     "Cancelled; nothing was changed": "Cancelado; nada foi alterado",
     "Solved: {title}; {count} faces": "Calculado: {title}; {count} faces",
+    "LuzEspecular: solved; leave Edit Mode (Tab) to see the results": (
+        "LuzEspecular: calculado; saia do modo de edição (Tab) para ver os resultados"
+    ),
     "LuzEspecular: {percent:.0f} % {stage} (Esc cancels)": "LuzEspecular: {percent:.0f} % {stage} (Esc cancela)",
     "Solve": "Calcular",
     "Live": "Ao vivo",
@@ -33,7 +36,7 @@ TEXTS = {
     ),
     "The scene changed since it was solved: solve again": "A cena mudou desde o cálculo: calcule de novo",
     "No calculation is running": "Nenhum cálculo em andamento",
-    "Esc cancels": "Esc cancela",
+    "Cancel": "Cancelar",
     "about {seconds:.0f} s left": "faltam cerca de {seconds:.0f} s",
     "about {minutes:.0f} min left": "faltam cerca de {minutes:.0f} min",
     "Save a picture of the results with their legend as a PNG file, seen from the scene's camera": (

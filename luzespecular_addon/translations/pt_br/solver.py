@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 STAGES = {
+    "starting": "começando",
     "planes": "planos",
     "scene check": "verificação da cena",
     "fracture": "fracionamento",
