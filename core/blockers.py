@@ -38,24 +38,35 @@ class Blockers:
     normals : (k, 3) float, unit
     offsets : (k,) float
     outline : (k,) int
+    plane : (k,) int
+        Of the bright polygons that it may stand before; -1: any.
     """
 
     vertices: np.ndarray
     normals: np.ndarray
     offsets: np.ndarray
     outline: np.ndarray
+    plane: np.ndarray
+
+    @classmethod
+    def of(cls, outlines: Outlines, outline, plane) -> Blockers:
+        """Some outlines ``(k,)``, before planes ``(k,)``."""
+        return cls(
+            outlines.vertices[outline], outlines.normals[outline], outlines.offsets[outline], outline, plane
+        )
 
     @classmethod
     def none(cls) -> Blockers:
         """Nothing in the way."""
-        return cls(np.zeros((0, 3, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
+        none = np.zeros(0, np.int64)
+        return cls(np.zeros((0, 3, 3)), np.zeros((0, 3)), np.zeros(0), none, none)
 
     def __len__(self) -> int:
         return len(self.outline)
 
     def take(self, index) -> Blockers:
         """Some of them."""
-        return Blockers(self.vertices[index], self.normals[index], self.offsets[index], self.outline[index])
+        return Blockers(*(part[index] for part in (self.vertices, self.normals, self.offsets, self.outline, self.plane)))
 
     def joined(self, others: Blockers) -> Blockers:
         """These and others."""
@@ -66,13 +77,14 @@ class Blockers:
             np.concatenate([self.normals, others.normals]),
             np.concatenate([self.offsets, others.offsets]),
             np.concatenate([self.outline, others.outline]),
+            np.concatenate([self.plane, others.plane]),
         )
 
     def reflected(self, normal, offset: float) -> Blockers:
         """Their images in a mirror, run round the other way so that normals stay right-handed."""
         vertices = reflect_points(self.vertices[:, ::-1], normal, offset)
         normals = reflect(self.normals, normal)
-        return Blockers(vertices, normals, np.einsum("kc,kc->k", normals, vertices[:, 0]), self.outline)
+        return Blockers(vertices, normals, np.einsum("kc,kc->k", normals, vertices[:, 0]), self.outline, self.plane)
 
     def facing(self, points, unseen_backs, tolerance: float) -> np.ndarray:
         """(k, r) float: height of points before each plane; 0 in it, and behind outlines ``(o,)`` of unseen backs."""
@@ -114,15 +126,15 @@ class Overlaps:
     centre: np.ndarray
 
     @classmethod
-    def of(cls, outer, inner, corners) -> Overlaps:
-        """Of polygons ``(k, w, 3)`` and ``(s, v, 3)``, as seen from between ``corners`` (c, 3)."""
+    def of(cls, outer, inner, corners, may=True) -> Overlaps:
+        """Of polygons ``(k, w, 3)`` and ``(s, v, 3)`` that ``may`` (s, k), as seen from between ``corners`` (c, 3)."""
         centre = corners.mean(axis=0)
         outer, inner, eye = outer - centre, inner - centre, corners - centre
         extent = max(float(np.abs(part).max(initial=1e-300)) for part in (outer, inner, eye))
         low = np.minimum(inner.min(axis=1), eye.min(axis=0)) - _SLIVER * extent
         high = np.maximum(inner.max(axis=1), eye.max(axis=0)) + _SLIVER * extent
         apart = (outer.min(axis=1) > high[:, None]) | (outer.max(axis=1) < low[:, None])
-        number, which = np.nonzero(~apart.any(axis=2))
+        number, which = np.nonzero(~apart.any(axis=2) & may)
         forms, sides = _forms(outer[which], inner[number], extent)
         back, along = _forms(inner[number], outer[which], extent)
         return cls(which, number, forms, back, sides <= 1e-12 * extent, along <= 1e-12 * extent, centre)
@@ -287,12 +299,60 @@ def between(outlines: Outlines, corners, shapes, half_spaces: list[HalfSpace], s
     apart = (near.max(axis=0) > tolerance) & (far.min(axis=0) < -tolerance)
     apart |= (near.min(axis=0) < -tolerance) & (far.max(axis=0) > tolerance)
     kept = index[apart]
-    parts = outlines.vertices[kept]
+    return _cut(Blockers.of(outlines, kept, np.full(len(kept), -1)), half_spaces, tolerance)
+
+
+def _cut(blockers: Blockers, half_spaces: list[HalfSpace], tolerance: float) -> Blockers:
+    """What of blockers lies within half-spaces."""
+    parts = blockers.vertices
     for half in half_spaces:
         parts = polygons.clip(parts, half.normal, half.offset)
-    wide = polygons.areas(parts) > tolerance**2
-    kept = kept[wide]
-    return Blockers(parts[wide], outlines.normals[kept], outlines.offsets[kept], kept)
+    return replace(blockers, vertices=parts).take(polygons.areas(parts) > tolerance**2)
+
+
+@dataclass(frozen=True, eq=False)
+class Before:
+    """What of outlines lies before some planes, of which parts shine: found once for all receivers.
+
+    Attributes
+    ----------
+    blockers : Blockers
+        For each plane its own.
+    low, high : (k,) float
+        How far what shines on the plane reaches behind and before the blocker's plane.
+    tolerance : float
+    """
+
+    blockers: Blockers
+    low: np.ndarray
+    high: np.ndarray
+    tolerance: float
+
+    @classmethod
+    def of(cls, outlines: Outlines, normals, offsets, shining, plane) -> Before:
+        """Of planes ``(p, 3)``, ``(p,)``, and polygons ``(s, v, 3)`` that shine on planes ``(s,)``."""
+        tolerance = outlines.tolerance
+        height = shining @ outlines.normals.T - outlines.offsets
+        first = np.flatnonzero(np.diff(plane, prepend=-1))
+        low = np.minimum.reduceat(height.min(axis=1), first)
+        high = np.maximum.reduceat(height.max(axis=1), first)
+        above = (outlines.vertices @ normals.T - offsets[:, None, None].T > tolerance).any(axis=1).T
+        number, outline = np.nonzero(above & ((low < -tolerance) | (high > tolerance)))
+        blockers = Blockers.of(outlines, outline, number)
+        parts = polygons.clip(blockers.vertices, normals[number], offsets[number])
+        wide = polygons.areas(parts) > tolerance**2
+        return cls(
+            replace(blockers, vertices=parts).take(wide), low[number, outline][wide], high[number, outline][wide], tolerance
+        )
+
+    def between(self, corners, half_spaces: list[HalfSpace]) -> Blockers:
+        """Those, cut to half-spaces that all light is within, that may stand before receivers between corners (c, 3)."""
+        near = corners @ self.blockers.normals.T - self.blockers.offsets
+        apart = (near.max(axis=0) > self.tolerance) & (self.low < -self.tolerance)
+        apart |= (near.min(axis=0) < -self.tolerance) & (self.high > self.tolerance)
+        for half in half_spaces:
+            apart &= above(self.blockers.vertices, half, self.tolerance)
+        return _cut(self.blockers.take(np.flatnonzero(apart)), half_spaces, self.tolerance)
 
 
 def above(vertices, half: HalfSpace, tolerance: float) -> np.ndarray:
@@ -317,22 +377,25 @@ class Standing:
     ----------
     blockers : Blockers
     shapes : (s, v, 3) float
+    plane : (s,) int
     overlaps : Overlaps
         Of blockers and shapes.
     """
 
     blockers: Blockers
     shapes: np.ndarray
+    plane: np.ndarray
     overlaps: Overlaps
 
     @classmethod
-    def of(cls, blockers: Blockers, shapes, corners, tolerance: float) -> Standing:
-        """Those of the blockers that matter."""
-        overlaps = Overlaps.of(blockers.vertices, shapes, corners)
+    def of(cls, blockers: Blockers, shapes, plane, corners, tolerance: float) -> Standing:
+        """Those of the blockers that matter to shapes on planes ``(s,)``."""
+        may = (blockers.plane == plane[:, None]) | (blockers.plane < 0)
+        overlaps = Overlaps.of(blockers.vertices, shapes, corners, may)
         if len(overlaps.outer):
             overlaps = overlaps.take(overlaps.near(corners, blockers.facing(corners, None, tolerance)))
         used, outer = np.unique(overlaps.outer, return_inverse=True)
-        return cls(blockers.take(used), shapes, replace(overlaps, outer=outer.reshape(-1)))
+        return cls(blockers.take(used), shapes, plane, replace(overlaps, outer=outer.reshape(-1)))
 
 
 def light_past(
@@ -383,7 +446,7 @@ def light_past(
         panes = np.bincount((rows * shapes + overlaps.inner[pairs])[clear[pairs]], minlength=len(every))
         by_pieces &= panes[place] > 0
     if by_pieces.any():
-        out += _by_pieces(outlines, blockers, seen.take(np.flatnonzero(by_pieces)), points, normal, mirrors)
+        out += _by_pieces(outlines, standing, seen.take(np.flatnonzero(by_pieces)), points, normal, mirrors)
         count[by_pieces] = -1
     corners = blockers.vertices.transpose(2, 1, 0)
     for number in np.unique(count[count > 0]).tolist():
@@ -414,14 +477,18 @@ def _add_whole(out: np.ndarray, seen: Shapes, normal, mirrors: Sequence[Reflecti
     return out
 
 
-def _by_pieces(outlines: Outlines, blockers: Blockers, seen: Shapes, points, normal, mirrors) -> np.ndarray:
+def _by_pieces(outlines: Outlines, standing: Standing, seen: Shapes, points, normal, mirrors) -> np.ndarray:
     """(r,) float: as `light_past`, where pieces need weights of their own: past panes, or by uneven mirrors."""
-    for polygon, outline in zip(blockers.vertices, blockers.outline.tolist(), strict=True):
+    blockers = standing.blockers
+    every = zip(blockers.vertices, blockers.outline.tolist(), blockers.plane.tolist(), strict=True)
+    for polygon, outline, plane in every:
         planes, edges, facing = edge_cones(polygon[None] - points[:, None])
         height = np.matmul(seen.shape.transpose(2, 1, 0), planes.transpose(0, 2, 1)[seen.row])
         reach = np.abs(seen.shape).max(axis=(0, 1))
         overlaps = ((height.max(axis=1) > 1e-12 * reach[:, None]) | ~edges[seen.row]).all(axis=1)
         overlaps &= facing[seen.row] != 0
+        if plane >= 0:
+            overlaps &= standing.plane[seen.polygon] == plane
         if overlaps.any():
             behind = _past_blocker(outlines, polygon, outline, seen.take(np.flatnonzero(overlaps)), planes, edges)
             seen = joined([seen.take(np.flatnonzero(~overlaps)), *behind])

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
-from .blockers import Blockers, Shapes, Standing, above, between, edge_cones, frame, has_area, joined, light_past
+from .blockers import Before, Blockers, Shapes, Standing, above, between, edge_cones, frame, has_area, joined, light_past
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
@@ -24,8 +24,8 @@ from .unhidden import whole_form_factors
 _FAINT = 1e-4
 """Of the illuminance that the sources' flux would be, spread over all surfaces: what gives less is not looked for."""
 
-_TOGETHER = 16
-"""Sources of one plane that are clipped at once."""
+_TOGETHER = 32
+"""Sources that are clipped at once, or a few more: all of one plane."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,9 +130,9 @@ class Bright:
     faint: float = _FAINT
 
     @cached_property
-    def groups(self) -> list[_Coplanar]:
-        """Sources of one plane together."""
-        return _coplanar(self.sources, self.outlines)
+    def groups(self) -> list[_Group]:
+        """Sources that are clipped at once."""
+        return _groups(self.sources, self.outlines)
 
     @cached_property
     def least(self) -> float:
@@ -152,7 +152,7 @@ class Bright:
     @cached_property
     def brightest(self) -> float:
         """No less than the exitance that is seen along any one direction, all mirrors on the way together."""
-        planes = [group.brightest for group in self.groups]
+        planes = [brightest for group in self.groups for brightest in group.brightest]
         mixed = any(
             (m.is_specular or m.is_transparent) and (m.diffuse_reflectance > 0 or m.exitance > 0)
             for m in self.outlines.materials
@@ -167,20 +167,30 @@ class Bright:
 
 
 @dataclass(frozen=True, eq=False)
-class _Coplanar:
-    """Sources of one plane and side.
+class _Group:
+    """Sources that are clipped at once, plane after plane.
 
     Attributes
     ----------
-    plane : HalfSpace
-        Before it they are seen.
     polygons : (s, v, 3) float, padded
     exitance : (s,) float
+    plane : (s,) int
+        Of those below.
+    normals, offsets : (p, 3) and (p,) float
+        Planes before which sources are seen.
+    outlines : Outlines
     """
 
-    plane: HalfSpace
     polygons: np.ndarray
     exitance: np.ndarray
+    plane: np.ndarray
+    normals: np.ndarray
+    offsets: np.ndarray
+    outlines: Outlines
+
+    def heights(self, points) -> np.ndarray:
+        """(s, r) float: of points ``(r, 3)`` before the sources' planes."""
+        return (self.normals @ points.T - self.offsets[:, None])[self.plane]
 
     @cached_property
     def spheres(self) -> tuple[np.ndarray, np.ndarray]:
@@ -194,36 +204,59 @@ class _Coplanar:
         return self.exitance * polygons.areas(self.polygons)
 
     def most(self, points, height) -> np.ndarray:
-        """(r, s) float: no less than what points at a height before the plane get [lx]."""
+        """(s, r) float: no less than what points at heights (s, r) before the planes get [lx]."""
         centres, radii = self.spheres
-        height = height[:, None]
-        near = np.maximum(np.linalg.norm(points[:, None] - centres, axis=2) - radii, height)
-        return np.minimum(self.fluxes * (height / near) / (np.pi * near**2), self.exitance)
+        height = np.maximum(height, 1e-100)
+        near = np.maximum(np.linalg.norm(points - centres[:, None], axis=2) - radii[:, None], height)
+        most = self.fluxes[:, None] * (height / near) / (np.pi * near**2)
+        return np.minimum(most, self.exitance[:, None])
 
     @cached_property
-    def brightest(self) -> float:
-        """No less than the exitance at any one place, where sources lie on one another."""
-        across = polygons.plane_basis(self.plane.normal)
-        flat = self.polygons @ across.T
-        low, high = flat.min(axis=1), flat.max(axis=1)
-        meet = (np.minimum(high[:, None], high) > np.maximum(low[:, None], low)).all(axis=2)
-        return float((meet @ self.exitance).max())
+    def brightest(self) -> list[float]:
+        """No less than the exitance at any one place of each plane, where sources lie on one another."""
+        found = []
+        for number, normal in enumerate(self.normals):
+            mine = self.plane == number
+            flat = self.polygons[mine] @ polygons.plane_basis(normal).T
+            low, high = flat.min(axis=1), flat.max(axis=1)
+            meet = (np.minimum(high[:, None], high) > np.maximum(low[:, None], low)).all(axis=2)
+            found.append(float((meet @ self.exitance[mine]).max()))
+        return found
+
+    @cached_property
+    def before(self) -> Before:
+        """What of the outlines lies before each plane."""
+        return Before.of(self.outlines, self.normals, self.offsets, self.polygons, self.plane)
 
 
-def _coplanar(sources: list[Source], outlines: Outlines) -> list[_Coplanar]:
-    groups: list[tuple[HalfSpace, list[Source]]] = []
+def _groups(sources: list[Source], outlines: Outlines) -> list[_Group]:
+    planes: list[tuple[np.ndarray, float, list[Source]]] = []
     for source in sources:
         normal, offset = source.plane
-        for plane, members in groups:
-            alike = plane.normal @ normal > 1 - 1e-12 and abs(plane.offset - offset) <= outlines.tolerance
-            if alike and len(members) < _TOGETHER:
+        for other, at, members in planes:
+            if other @ normal > 1 - 1e-12 and abs(at - offset) <= outlines.tolerance:
                 members.append(source)
                 break
         else:
-            groups.append((HalfSpace(normal, offset), [source]))
+            planes.append((normal, offset, [source]))
+    together: list[list[tuple[np.ndarray, float, list[Source]]]] = []
+    room = 0
+    for plane in planes:
+        if room <= 0:
+            together.append([])
+            room = _TOGETHER
+        together[-1].append(plane)
+        room -= len(plane[2])
     return [
-        _Coplanar(plane, polygons.pad([s.polygon for s in members])[0], np.array([s.exitance for s in members]))
-        for plane, members in groups
+        _Group(
+            polygons.pad([source.polygon for _, _, members in some for source in members])[0],
+            np.array([source.exitance for _, _, members in some for source in members]),
+            np.repeat(np.arange(len(some)), [len(members) for _, _, members in some]),
+            np.array([normal for normal, _, _ in some]),
+            np.array([offset for _, offset, _ in some]),
+            outlines,
+        )
+        for some in together
     ]
 
 
@@ -276,16 +309,18 @@ class _Path:
         """Of a group: which of its sources may be seen (s,), what of them, and what may stand before them."""
         found = self._sources.get(number)
         if found is None:
-            group, outlines = self.bright.groups[number], self.bright.outlines
+            group, tolerance = self.bright.groups[number], self.bright.outlines.tolerance
             visible = self.clipped(group.polygons)
-            shown = polygons.areas(visible) > outlines.tolerance**2
+            shown = polygons.areas(visible) > tolerance**2
+            shown &= (group.heights(self.corners) > tolerance).any(axis=1)
             if self.beyond is not None:
-                shown &= above(group.polygons, self.beyond, outlines.tolerance)  # not the mirror's own back
+                shown &= above(group.polygons, self.beyond, tolerance)  # not the mirror's own back
             which = np.flatnonzero(shown)
             visible, blockers = visible[which], self.blockers
             if len(which):
-                blockers = blockers.joined(between(outlines, self.corners, visible, [group.plane, *self.limits]))
-            found = self._sources[number] = which, Standing.of(blockers, visible, self.corners, outlines.tolerance)
+                blockers = blockers.joined(group.before.between(self.corners, self.limits))
+            standing = Standing.of(blockers, visible, group.plane[which], self.corners, tolerance)
+            found = self._sources[number] = which, standing
         return found
 
     def aperture(self, mirror: int) -> np.ndarray:
@@ -405,24 +440,24 @@ class SourceView:
         return total
 
     def _add_sources(self, path: _Path, leg: _Leg, number: int, unseen, total: np.ndarray) -> None:
-        outlines, least, group = self.bright.outlines, self.bright.least, self.bright.groups[number]
-        height = leg.points @ group.plane.normal - group.plane.offset
-        rows = np.flatnonzero(height > outlines.tolerance)
-        if not len(rows):
-            return
+        least, group = self.bright.least, self.bright.groups[number]
         some, standing = path.sources(number)
-        if leg.opening is None:
-            which, row = np.divmod(np.arange(len(some) * len(rows)), len(rows))
-        else:
-            bright = path.throughput * group.most(leg.points[rows], height[rows])[:, some] > least
-            bright &= path.throughput * leg.opening[rows, None] * group.exitance[some] > least
-            which, row = np.nonzero(bright.T)
+        if not len(some):
+            return
+        height = group.heights(leg.points)
+        bright = height[some] > self.bright.outlines.tolerance
+        if leg.opening is not None:
+            bright &= path.throughput * group.most(leg.points, height)[some] > least
+            bright &= path.throughput * leg.opening * group.exitance[some, None] > least
+        which, row = np.nonzero(bright)
         if not len(row):
             return
-        seen = leg.seen(rows[row], which, standing.shapes, group.exitance[some[which]])
+        seen = leg.seen(row, which, standing.shapes, group.exitance[some[which]])
         if not len(seen.row):
             return
-        total += light_past(outlines, standing, unseen, seen, leg.points, path.horizon.normal, path.mirrors)
+        total += light_past(
+            self.bright.outlines, standing, unseen, seen, leg.points, path.horizon.normal, path.mirrors
+        )
 
     def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, checkpoint, total: np.ndarray) -> None:
         outlines, tolerance = self.bright.outlines, self.bright.outlines.tolerance

@@ -30,7 +30,7 @@ def blockers_of(screens):
     corners, _ = polygons.pad(screens)
     normals = polygons.newell_normal(corners)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    return Blockers(corners, normals, np.einsum("kc,kc->k", normals, corners[:, 0]), np.arange(len(corners)))
+    return Blockers(corners, normals, np.einsum("kc,kc->k", normals, corners[:, 0]), np.arange(len(corners)), np.full(len(corners), -1))
 
 
 def past(screens, shape=LAMP, eyes=EYES, normal=UP):
