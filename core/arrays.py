@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+_PRODUCT_ROWS = 128
+_PRODUCT_COLUMNS = 512
+
 
 def pick(matrix: np.ndarray, row, column) -> np.ndarray:
     """(n,) elements of a matrix ``(r, k)``, whichever of its axes is contiguous; ``row`` and ``column`` (n,) int."""
@@ -22,3 +25,25 @@ def onto(vectors: np.ndarray, axis) -> np.ndarray:
 def dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(n,) inner products of vectors ``(n, 3)``."""
     return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
+
+
+def product(matrix: np.ndarray, vector: np.ndarray, exact: bool = False) -> np.ndarray:
+    """(m,) float: a float32 matrix times a float64 vector.
+
+    Summed in float32, some columns at a time, which errs by less than 1e-6; ``exact``: in float64, some rows at a time,
+    so that sums of products are products of sums.
+    """
+    out = np.zeros(len(matrix))
+    if exact:
+        for first in range(0, len(matrix), _PRODUCT_ROWS):
+            rows = slice(first, first + _PRODUCT_ROWS)
+            out[rows] = matrix[rows].astype(float) @ vector
+        return out
+    scale = float(np.abs(vector).max(initial=0.0))
+    if scale == 0 or not len(matrix):
+        return out
+    shares = (vector / scale).astype(np.float32)
+    for first in range(0, len(shares), _PRODUCT_COLUMNS):
+        columns = slice(first, first + _PRODUCT_COLUMNS)
+        out += matrix[:, columns] @ shares[columns]
+    return scale * out

@@ -51,9 +51,7 @@ class Blockers:
     @classmethod
     def of(cls, outlines: Outlines, outline, plane) -> Blockers:
         """Some outlines ``(k,)``, before planes ``(k,)``."""
-        return cls(
-            outlines.vertices[outline], outlines.normals[outline], outlines.offsets[outline], outline, plane
-        )
+        return cls(outlines.vertices[outline], outlines.normals[outline], outlines.offsets[outline], outline, plane)
 
     @classmethod
     def none(cls) -> Blockers:
@@ -66,7 +64,9 @@ class Blockers:
 
     def take(self, index) -> Blockers:
         """Some of them."""
-        return Blockers(*(part[index] for part in (self.vertices, self.normals, self.offsets, self.outline, self.plane)))
+        return Blockers(
+            *(part[index] for part in (self.vertices, self.normals, self.offsets, self.outline, self.plane))
+        )
 
     def joined(self, others: Blockers) -> Blockers:
         """These and others."""
@@ -342,11 +342,14 @@ class Before:
         parts = polygons.clip(blockers.vertices, normals[number], offsets[number])
         wide = polygons.areas(parts) > tolerance**2
         return cls(
-            replace(blockers, vertices=parts).take(wide), low[number, outline][wide], high[number, outline][wide], tolerance
+            replace(blockers, vertices=parts).take(wide),
+            low[number, outline][wide],
+            high[number, outline][wide],
+            tolerance,
         )
 
     def between(self, corners, half_spaces: list[HalfSpace]) -> Blockers:
-        """Those, cut to half-spaces that all light is within, that may stand before receivers between corners (c, 3)."""
+        """Those that may stand before receivers between corners (c, 3), cut to half-spaces that all light is within."""
         near = corners @ self.blockers.normals.T - self.blockers.offsets
         apart = (near.max(axis=0) > self.tolerance) & (self.low < -self.tolerance)
         apart |= (near.min(axis=0) < -self.tolerance) & (self.high > self.tolerance)

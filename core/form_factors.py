@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from .arrays import product
 from .convex import ConvexRoom
 from .enclosures import Enclosures
 from .gather import Gathered, gather
@@ -339,19 +340,24 @@ class Exchange:
 
     Attributes
     ----------
-    factors : (p, p) float
+    factors : (p, p) float32
         Form factors from each patch (receiver) to each patch (emitter).
     spread, missing : (p,) float
         What evens out their errors: see `Conservation`.
     part : (p,) int
         Enclosure of each patch.
+    exact : bool
+        Multiply in float64: see `arrays.product`.
     """
 
     factors: np.ndarray
     spread: np.ndarray
     missing: np.ndarray
     part: np.ndarray
+    exact: bool = False
 
     def __matmul__(self, exitance: np.ndarray) -> np.ndarray:
         by_part = np.bincount(self.part, weights=self.missing * exitance)
-        return self.factors @ exitance + (self.spread * by_part[self.part] if len(self.part) else 0.0)
+        return product(self.factors, exitance, self.exact) + (
+            self.spread * by_part[self.part] if len(self.part) else 0.0
+        )

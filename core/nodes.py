@@ -80,10 +80,13 @@ class Weights:
 
     def apply(self, values: np.ndarray) -> np.ndarray:
         """(e,) or (e, g) float from values at the nodes ``(m,)`` or ``(m, g)``."""
-        count = len(self.start) - 1
-        if values.ndim == 1:
-            return np.bincount(self.rows, weights=self.weight * values[self.node], minlength=count)
-        return np.stack([self.apply(column) for column in values.T], axis=1)
+        if values.ndim > 1:
+            return np.stack([self.apply(column) for column in values.T], axis=1)
+        out = np.zeros(len(self.start) - 1)
+        some = np.flatnonzero(np.diff(self.start))
+        if len(some):
+            out[some] = np.add.reduceat(self.weight * values.take(self.node), self.start[some])
+        return out
 
     def rows_of(self, some: slice) -> np.ndarray:
         """(n,) int: row of each entry of some rows, from 0."""

@@ -231,7 +231,7 @@ def _prepared(
             patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         conservation = Conservation.of(geometry, nodes, gathered, enclosures)
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
-        exchange = Exchange(patch_factors, spread, conservation.missing, enclosures.of_patches)
+        exchange = Exchange(patch_factors.astype(np.float32), spread, conservation.missing, enclosures.of_patches)
     sees_out = bool(gathered.sky_direct.any() or gathered.sky_specular.any())
     for name, why in needless(geometry, sees_out, convex is not None):
         recorder.skip(name, why)

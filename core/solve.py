@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from . import polygons, radiosity
+from .arrays import product
 from .daylight import Daylight
 from .errors import SceneError
 from .estimate import LEAST, OF_DOUBT, relative_errors, spread_of_facets
@@ -31,9 +32,10 @@ _OF_SUN_PATCHES = 0.25
 _CLOSED = 1e-3
 """Share of bright polygons' light that may escape from what counts as closed."""
 
+_FINEST = 1e-6
+"""Change left to come, over all light, below which products are summed in float64."""
+
 _SOURCE_ROWS = 1024
-_PRODUCT_ROWS = 128
-_PRODUCT_COLUMNS = 512
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,12 +228,12 @@ def interreflect(
     def checkpoint() -> None:
         recorder.report(0.8, "interreflection")
 
+    finest = exact or tolerance * (1 - transfer.gain) < _FINEST
+    exchange = replace(transfer.exchange, exact=finest)
     if cycles is None:
-        settled = radiosity.until_settled(
-            transfer.exchange, reflectance, smooth + once, tolerance, checkpoint, transfer.gain
-        )
+        settled = radiosity.until_settled(exchange, reflectance, smooth + once, tolerance, checkpoint, transfer.gain)
     else:
-        settled = _cycles_after_first(transfer.exchange, reflectance, smooth, once, cycles, checkpoint)
+        settled = _cycles_after_first(exchange, reflectance, smooth, once, cycles, checkpoint)
     exitance = reflectance * settled
     again = np.maximum(first + transfer.on_elements(gather_patches(transfer, exitance, exact)), 0.0)
     adjusted[2] = transfer.conservation.missing @ exitance
@@ -321,8 +323,8 @@ def _gather_bright(
 
         run_parallel(work, chunks, transfer.threads, report)
         done = begun + share
-        # there is other light as well: where this is faint, its unevenness matters little
-        return np.stack([found, np.full(len(found), found.mean())], axis=1)
+        # there is other, even light as well: where this is faint, its unevenness matters little
+        return (found + found.mean())[:, None]
 
     nodes = settled(transfer.lattice, geometry.fracture, evaluate, times * transfer.times)
     return nodes.on_elements(found) + _of_rows(transfer, transfer.deep_rows, transfer.deep_factors, deep, exact)
@@ -416,28 +418,6 @@ def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field:
     exitance = geometry.cell_means(geometry.from_patches(field.patch_exitance + field.patch_emitted))
     more = np.pi * product(trial.facets.sky, sky_column(trial.targets, light)) + product(trial.facets.cells, exitance)
     return relative * (total - exact) + LEAST * total + spread_of_facets(trial.facets, geometry.element_surface, more)
-
-
-def product(matrix: np.ndarray, vector: np.ndarray, exact: bool = False) -> np.ndarray:
-    """(m,) float: a float32 matrix times a float64 vector.
-
-    Summed in float32, some columns at a time, which errs by less than 1e-6; ``exact``: in float64, some rows at a time,
-    so that sums of products are products of sums.
-    """
-    out = np.zeros(len(matrix))
-    if exact:
-        for first in range(0, len(matrix), _PRODUCT_ROWS):
-            rows = slice(first, first + _PRODUCT_ROWS)
-            out[rows] = matrix[rows].astype(float) @ vector
-        return out
-    scale = float(np.abs(vector).max(initial=0.0))
-    if scale == 0 or not len(matrix):
-        return out
-    shares = (vector / scale).astype(np.float32)
-    for first in range(0, len(shares), _PRODUCT_COLUMNS):
-        columns = slice(first, first + _PRODUCT_COLUMNS)
-        out += matrix[:, columns] @ shares[columns]
-    return scale * out
 
 
 def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:

@@ -14,7 +14,19 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
-from .blockers import Before, Blockers, Shapes, Standing, above, between, edge_cones, frame, has_area, joined, light_past
+from .blockers import (
+    Before,
+    Blockers,
+    Shapes,
+    Standing,
+    above,
+    between,
+    edge_cones,
+    frame,
+    has_area,
+    joined,
+    light_past,
+)
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
@@ -455,9 +467,7 @@ class SourceView:
         seen = leg.seen(row, which, standing.shapes, group.exitance[some[which]])
         if not len(seen.row):
             return
-        total += light_past(
-            self.bright.outlines, standing, unseen, seen, leg.points, path.horizon.normal, path.mirrors
-        )
+        total += light_past(self.bright.outlines, standing, unseen, seen, leg.points, path.horizon.normal, path.mirrors)
 
     def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, checkpoint, total: np.ndarray) -> None:
         outlines, tolerance = self.bright.outlines, self.bright.outlines.tolerance

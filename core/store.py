@@ -76,7 +76,7 @@ def save_transfer(transfer: Transfer, path) -> Path:
     for name in _WEIGHTS:
         for part in fields(Weights):
             arrays[f"{name}_{part.name}"] = getattr(getattr(transfer.nodes, name), part.name)
-    arrays["exchange_factors"] = transfer.exchange.factors.astype(np.float32)  # sums of float32, all of their digits
+    arrays["exchange_factors"] = transfer.exchange.factors
     arrays["exchange_spread"] = transfer.exchange.spread
     for name in ("lost", "spread", "missing"):
         arrays[f"conservation_{name}"] = getattr(transfer.conservation, name)
@@ -220,7 +220,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
         deep_factors=array("deep_factors", np.float32, len(deep_rows), patches),
         deep_rows=deep_rows,
         exchange=Exchange(
-            array("exchange_factors", np.float32, patches, patches).astype(float),
+            array("exchange_factors", np.float32, patches, patches),
             array("exchange_spread", np.float64, patches),
             missing,
             of_patches,

@@ -30,7 +30,13 @@ def blockers_of(screens):
     corners, _ = polygons.pad(screens)
     normals = polygons.newell_normal(corners)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    return Blockers(corners, normals, np.einsum("kc,kc->k", normals, corners[:, 0]), np.arange(len(corners)), np.full(len(corners), -1))
+    return Blockers(
+        corners,
+        normals,
+        np.einsum("kc,kc->k", normals, corners[:, 0]),
+        np.arange(len(corners)),
+        np.full(len(corners), -1),
+    )
 
 
 def past(screens, shape=LAMP, eyes=EYES, normal=UP):
@@ -112,7 +118,7 @@ def test_nothing_in_the_way():
 
 def overlaps(blockers, lamp, facing):
     """(k, r) bool twice: what hides and what crosses the lamp, those told apart beforehand left out."""
-    standing = Standing.of(blockers, lamp[None], EYES, 1e-12)
+    standing = Standing.of(blockers, lamp[None], np.zeros(1, int), EYES, 1e-12)
     hides, crosses = np.zeros((2, len(blockers), len(EYES)), bool)
     mine = standing.blockers.outline[standing.overlaps.outer]
     hides[mine], crosses[mine] = standing.overlaps.seen(EYES, facing[standing.blockers.outline])
