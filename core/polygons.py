@@ -449,6 +449,8 @@ def clip(polygons, normal, offset=0.0) -> np.ndarray:
     if m == 0:
         return p
     n, h = np.asarray(normal, float), np.asarray(offset, float)
+    if p.size <= _FEWEST and n.ndim == 1 and h.ndim == 0:
+        return _clip_few(p, n, h)
     s = p @ n if n.ndim == 1 else np.einsum("mvc,mc->mv", p, n)
     s -= h if h.ndim == 0 else h[:, None]
     inside = s >= 0
@@ -467,6 +469,37 @@ def clip(polygons, normal, offset=0.0) -> np.ndarray:
         out[every] = widen(p[every], out.shape[1])
     out[cut] = widen(parts, out.shape[1])
     return out
+
+
+_FEWEST = 60
+"""Coordinates up to which plain numbers are cut faster than arrays."""
+
+
+def _clip_few(p, normal, offset) -> np.ndarray:
+    a, b, c = normal.tolist()
+    h = float(offset)
+    found, width, same = [], 0, True
+    for corners in p.tolist():
+        heights = [a * x + b * y + c * z - h for x, y, z in corners]
+        if min(heights) >= 0:
+            kept = corners
+        elif max(heights) < 0:
+            kept, same = corners[:1], False
+        else:
+            kept, same = [], False
+            for here, there, s, t in zip(
+                corners, corners[1:] + corners[:1], heights, heights[1:] + heights[:1], strict=True
+            ):
+                if s >= 0:
+                    kept.append(here)
+                if (s >= 0) != (t >= 0):
+                    share = s / (s - t)
+                    kept.append([x + (y - x) * share for x, y in zip(here, there, strict=True)])
+        found.append(kept)
+        width = max(width, len(kept))
+    if same:
+        return p
+    return np.array([kept + kept[-1:] * (width - len(kept)) for kept in found])
 
 
 def _cut(p, s, inside) -> np.ndarray:

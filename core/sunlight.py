@@ -94,10 +94,7 @@ class Sunlight:
         -------
         direct, specular : (e,) float [lx]
         """
-        direct, specular = (
-            light_elements(self.patches, elements, outline_sheet, by_mirrors) for by_mirrors in (False, True)
-        )
-        return direct, specular
+        return light_elements(self.patches, elements, outline_sheet)
 
     @property
     def blur(self) -> np.ndarray | float:
@@ -112,6 +109,9 @@ class Sunlight:
 _ROUNDING = 1e-11
 
 _ASIDE = np.array([6.1, 3.7, 7.1])
+
+_RECEIVERS = 64
+"""Outlines whose blockers are told at once."""
 
 NO_SUNLIGHT = Sunlight([], [], 0.0)
 
@@ -182,45 +182,55 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
         present = np.flatnonzero((vertices @ beam.ahead - start > tolerance).any(axis=1))
         vertices = polygons.clip(vertices[present], beam.ahead, start)
     cosine = outlines.normals[present] @ beam.travel
-    walls, wall_offsets = prism(vertices, beam.travel, cosine)
+    side = np.sign(cosine)
+    facing = np.abs(cosine) > 1e-12
+    walls = prism(vertices, beam.travel, cosine)
+    lit = np.flatnonzero(facing & ((cosine < 0) | outlines.back_counts[present]))
+    regions = vertices[lit]
+    if beam.mouth is not None:
+        for normal, offset in zip(*_mouth_prism(beam.mouth, beam.travel), strict=True):
+            regions = polygons.clip(regions, normal, offset)
+        some = wide(regions, tolerance)
+        lit, regions = lit[some], regions[some]
+    upstream = -outlines.normals[present[lit]] * side[lit, None]
+    start = -outlines.offsets[present[lit]] * side[lit]
     foremost = np.argsort(-np.abs(cosine) * polygons.areas(vertices), kind="stable")  # wide shadows leave least to cut
     found = []
-    for k in np.flatnonzero(np.abs(cosine) > 1e-12):
-        if cosine[k] > 0 and not outlines.back_counts[present[k]]:
-            continue
-        region = vertices[k][None]
-        if beam.mouth is not None:
-            around, at = _mouth_prism(beam.mouth, beam.travel)
-            for normal, offset in zip(around, at, strict=True):
-                region = polygons.clip(region, normal, offset)
-            region = region[wide(region, tolerance)]
-            if not len(region):
-                continue
-        pieces = region, np.ones(len(region))
-        normal, plane = outlines.normals[present[k]], float(outlines.offsets[present[k]])
-        upstream = -normal * np.sign(cosine[k])
-        height = vertices @ upstream - plane * -np.sign(cosine[k])
-        spread = np.einsum("owc,vc->owv", walls, region.reshape(-1, 3)) - wall_offsets[:, :, None]
-        meets = (
-            (height > tolerance).any(axis=1) & (np.abs(cosine) > 1e-12) & (spread.max(axis=2) > tolerance).all(axis=1)
-        )
-        meets[k] = False
-        some = np.flatnonzero(meets)
-        around, at = prism(region, beam.travel, cosine[k : k + 1])
-        meets[some] = ((vertices[some] @ around[0].T - at[0]).max(axis=1) > tolerance).all(axis=1)
-        for b in foremost[meets[foremost]]:
-            nearer, around, at = vertices[b], walls[b], wall_offsets[b]
-            if height[b].min() < 0:
-                nearer = polygons.clip(nearer[None], upstream, -plane * np.sign(cosine[k]))
-                (nearer,), (around,), (at,) = nearer, *prism(nearer, beam.travel, cosine[b : b + 1])
-            pieces = _shadow(outlines, pieces, nearer, (around, at), int(present[b]), beam.travel)
-            if not len(pieces[0]):
-                break
-        for polygon, factor in zip(*pieces, strict=True):
-            if wide(polygon, tolerance):
-                lux = beam.normal_illuminance * abs(float(cosine[k])) * float(factor)
-                found.append(SunPatch(int(present[k]), bool(cosine[k] < 0), polygon, lux, beam.order))
+    for first in range(0, len(lit), _RECEIVERS):
+        some = slice(first, first + _RECEIVERS)
+        around = prism(regions[some], beam.travel, cosine[lit[some]])
+        low, high = _reach(vertices, upstream[some], start[some])
+        meets = (high > tolerance) & facing & (present[lit[some], None] != present)
+        meets &= _meet(walls, regions[some], tolerance).T & _meet(around, vertices, tolerance)
+        for j, k in enumerate(lit[some].tolist()):
+            pieces = regions[first + j][None], np.ones(1)
+            for b in foremost[meets[j, foremost]].tolist():
+                nearer, prism_of = vertices[b], (walls[0][b], walls[1][b])
+                if low[j, b] < 0:
+                    (nearer,) = polygons.clip(nearer[None], upstream[first + j], start[first + j])
+                    normals, offsets = prism(nearer[None], beam.travel, cosine[b : b + 1])
+                    prism_of = normals[0], offsets[0]
+                pieces = _shadow(outlines, pieces, nearer, prism_of, int(present[b]), beam.travel)
+                if not len(pieces[0]):
+                    break
+            shown = wide(pieces[0], tolerance)
+            lux = beam.normal_illuminance * abs(float(cosine[k]))
+            for polygon, factor in zip(pieces[0][shown], pieces[1][shown].tolist(), strict=True):
+                found.append(SunPatch(int(present[k]), bool(cosine[k] < 0), polygon, lux * factor, beam.order))
     return found
+
+
+def _reach(vertices, normals, offsets) -> tuple[np.ndarray, np.ndarray]:
+    """(k, o) float twice: least and largest height of polygons ``(o, w, 3)`` over planes ``(k, 3)``, ``(k,)``."""
+    height = (vertices @ normals.T - offsets).transpose(2, 0, 1)
+    return height.min(axis=2), height.max(axis=2)
+
+
+def _meet(walls, shapes, tolerance: float) -> np.ndarray:
+    """(o, k) bool: polygons ``(k, v, 3)`` that reach within each of the ``walls`` of prisms, as of `prism`."""
+    normals, offsets = walls
+    reach = (normals.reshape(-1, 3) @ shapes.reshape(-1, 3).T).reshape(*offsets.shape, *shapes.shape[:2]).max(axis=3)
+    return (reach > tolerance + offsets[:, :, None]).all(axis=1)
 
 
 def _shadow(outlines: Outlines, pieces, blocker, walls, outline: int, travel):
@@ -244,14 +254,11 @@ def _shadow(outlines: Outlines, pieces, blocker, walls, outline: int, travel):
         keep = wide(outside, tolerance)
         left.append((outside[keep], factors[keep]))
         inside = polygons.clip(inside, normal, offset)
-        lit = wide(inside, tolerance)
-        inside, factors = inside[lit], factors[lit]
-        if not len(inside):
-            break
     material = outlines.materials[outline]
     if material.is_transparent:
         through = float(material.transmittance_at(outlines.normals[outline] @ travel))
-        left.append((inside, factors * through))
+        lit = wide(inside, tolerance)
+        left.append((inside[lit], factors[lit] * through))
     left = [part for part in left if len(part[1])] or left[:1]
     return polygons.joined([part[0] for part in left]), np.concatenate([part[1] for part in left])
 
@@ -324,6 +331,11 @@ class Triangles:
         """(3, e) float twice: lowest and highest coordinates of each."""
         return np.ascontiguousarray(self.corners.min(axis=1).T), np.ascontiguousarray(self.corners.max(axis=1).T)
 
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """(e,) float [m²]."""
+        return polygons.areas(self.corners)
+
     def around(self, some: np.ndarray, polygon) -> np.ndarray:
         """(k,) int: of some of them those that may lie within a polygon, by the boxes that bound them."""
         low, high = polygon.min(axis=0), polygon.max(axis=0)
@@ -336,7 +348,7 @@ class Triangles:
         return some
 
 
-def light_elements(patches: list[SunPatch], elements: Triangles, outline_sheet, specular: bool) -> np.ndarray:
+def light_elements(patches: list[SunPatch], elements: Triangles, outline_sheet) -> tuple[np.ndarray, np.ndarray]:
     """Mean illuminance on elements from sun patches: exactly the lit share of each.
 
     Parameters
@@ -344,45 +356,70 @@ def light_elements(patches: list[SunPatch], elements: Triangles, outline_sheet, 
     patches : list of SunPatch
     elements : Triangles
     outline_sheet : (o,) int
-    specular : bool
-        Patches that came by mirrors, or those that did not.
 
     Returns
     -------
-    (e,) float [lx]
+    direct, specular : (e,) float [lx]
+        By patches that came straight, and by mirrors.
     """
-    out = np.zeros(len(elements.corners))
-    for patch in patches:
-        if (patch.order > 0) != specular:
-            continue
+    near, some = [], []
+    for number, patch in enumerate(patches):
         mine = elements.members.get(int(outline_sheet[patch.outline]) + (0 if patch.front else elements.sheets))
         if mine is not None:
-            near = elements.around(mine, patch.polygon)
-            out[near] += patch.illuminance * lit_share(elements.corners[near], patch.polygon)
-    return out
+            near.append(elements.around(mine, patch.polygon))
+            some.append(number)
+    out = np.zeros((2, len(elements.corners)))
+    shapes = [patches[number].polygon for number in some]
+    for number, mine, share in zip(some, near, lit_shares(elements.corners, elements.areas, near, shapes), strict=True):
+        out[min(patches[number].order, 1), mine] += patches[number].illuminance * share
+    return out[0], out[1]
 
 
-def lit_share(triangles, polygon) -> np.ndarray:
-    """(n,) float: share of each triangle's area inside a coplanar convex polygon ``(v, 3)``."""
-    normal = polygons.newell_normal(polygon)
-    edge = np.roll(polygon, -1, axis=0) - polygon
-    inward = polygons.cross(normal, edge)
-    length = np.linalg.norm(inward, axis=1)
-    true = length > _ROUNDING * length.max()
-    inward, start = inward[true] / length[true, None], polygon[true]
-    offset = np.einsum("ec,ec->e", inward, start)
-    distance = inward @ triangles.reshape(-1, 3).T - offset[:, None]
-    distance = distance.reshape(len(inward), len(triangles), 3)
-    low, high = distance.min(axis=2), distance.max(axis=2)
-    inside = (low >= 0).all(axis=0)
-    cut = np.flatnonzero(~inside & (high > 0).all(axis=0))
-    share = inside.astype(float)
-    part = triangles[cut]
-    for n, h, across in zip(inward, offset, (low[:, cut] < 0).any(axis=1), strict=True):
-        if across:
-            part = polygons.clip(part, n, float(h))
-    share[cut] = polygons.areas(part) / polygons.areas(triangles[cut])
-    return share
+def lit_shares(triangles, areas, some: list[np.ndarray], shapes: list[np.ndarray]) -> list[np.ndarray]:
+    """Shares of triangles' areas inside coplanar convex polygons.
+
+    Parameters
+    ----------
+    triangles : (e, 3, 3) float
+    areas : (e,) float
+    some : list of (n,) int
+        For each polygon, the triangles that count.
+    shapes : list of (v, 3) float
+
+    Returns
+    -------
+    list of (n,) float
+    """
+    if not shapes:
+        return []
+    inward, offset = _borders(polygons.pad(shapes)[0])
+    shares, parts = [], []
+    for number, mine in enumerate(some):
+        a, b, c = (inward[number] @ triangles[mine].transpose(1, 2, 0)) - offset[number][:, None]
+        inside = (np.minimum(np.minimum(a, b), c) >= 0).all(axis=0)
+        parts.append(np.flatnonzero(~inside & (np.maximum(np.maximum(a, b), c) > 0).all(axis=0)))
+        shares.append(inside.astype(float))
+    count = [len(part) for part in parts]
+    of = np.repeat(np.arange(len(parts)), count)
+    cut = np.concatenate([mine[part] for mine, part in zip(some, parts, strict=True)])
+    lit = triangles[cut]
+    for edge in range(inward.shape[1]):
+        lit = polygons.clip(lit, inward[of, edge], offset[of, edge])
+    for share, part, found in zip(
+        shares, parts, np.split(polygons.areas(lit) / areas[cut], np.cumsum(count)[:-1]), strict=True
+    ):
+        share[part] = found
+    return shares
+
+
+def _borders(shapes) -> tuple[np.ndarray, np.ndarray]:
+    """Half-planes of polygons ``(m, v, 3)``: inward unit normals (m, v, 3) and offsets (m, v)."""
+    edge = polygons.following(shapes) - shapes
+    inward = polygons.cross(polygons.newell_normal(shapes)[:, None], edge)
+    length = np.linalg.norm(inward, axis=2)
+    true = length > _ROUNDING * length.max(axis=1, keepdims=True)
+    inward = np.where(true[..., None], inward / np.where(true, length, 1.0)[..., None], 0.0)
+    return inward, np.where(true, np.einsum("mvc,mvc->mv", inward, shapes), -1.0)
 
 
 def light_points(outlines: Outlines, beams: list[Beam], points, normals) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import luzespecular as luz
-from luzespecular.sunlight import lit_share
+from luzespecular import polygons
+from luzespecular.sunlight import lit_shares
 
 DNI = 80_000.0
 MIRROR = luz.Material(specular_reflectance=0.9)
@@ -26,6 +27,10 @@ def rectangle(x, y, z):
 
 
 FLOOR = rectangle((-5, 5), (-5, 5), 0)
+
+
+def lit_share(triangles, polygon):
+    return lit_shares(triangles, polygons.areas(triangles), [np.arange(len(triangles))], [polygon])[0]
 
 
 def lit_area(result, name, lux):
