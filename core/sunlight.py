@@ -190,8 +190,8 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
     if beam.mouth is not None:
         for normal, offset in zip(*_mouth_prism(beam.mouth, beam.travel), strict=True):
             regions = polygons.clip(regions, normal, offset)
-        some = wide(regions, tolerance)
-        lit, regions = lit[some], regions[some]
+        left = wide(regions, tolerance)
+        lit, regions = lit[left], regions[left]
     upstream = -outlines.normals[present[lit]] * side[lit, None]
     start = -outlines.offsets[present[lit]] * side[lit]
     foremost = np.argsort(-np.abs(cosine) * polygons.areas(vertices), kind="stable")  # wide shadows leave least to cut
