@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from . import polygons
+from . import layers, polygons
 from .arrays import dots
 from .hemisphere import Shapes
 from .projection import Beams
@@ -28,8 +28,15 @@ _SMALL = 0.1
 _FEW_CORNERS = 4
 """Corners of most parcels."""
 
-_MOST_PAIRS = 24
-"""Overlaps of two obstacles in one beam beyond which the parts that are common to more would become too many."""
+_FEW = 4
+"""More obstacles in one beam are first compared with the largest, which may hide them."""
+
+_FEW_PAIRS = 6
+"""Overlaps of two obstacles in one beam beyond which obstacles are taken from it one after the other: parts that are
+common to more become too many."""
+
+_HIDDEN = 1e-9
+"""What shows of an obstacle less than this share of it is hidden."""
 
 _BATCH = 1_000
 """Fewer regions with the same number of lines are cut together with those of more."""
@@ -177,10 +184,10 @@ def settle(cuts: Cuts, beams: Beams, limits: Limits, fine: np.ndarray) -> Shares
 
 def _visible(cuts: Cuts, beams: Beams, limits: Limits, shapes: Shapes):
     """Moments of what shows of each obstacle (n, 3) and of the beams (g, 3); which are settled (g,)."""
-    region = _Regions(cuts, beams, shapes)
     groups = len(limits.far_height)
+    region = _Regions(cuts, beams, shapes, groups)
     every = np.arange(len(cuts.beam))
-    whole = region.whole(groups)
+    whole = region.whole()
     alone = region.moments(every[:, None])
     ahead = _towards(region.frames.take(cuts.beam, axis=0), alone)
     distance = cuts.distance(every, ahead)
@@ -190,11 +197,20 @@ def _visible(cuts: Cuts, beams: Beams, limits: Limits, shapes: Shapes):
 
     some = np.flatnonzero(shows)
     some = some[np.argsort(cuts.group[some], kind="stable")]
+    some = some[~region.behind_largest(some, alone)]
+    visible[np.setdiff1d(np.flatnonzero(shows), some, assume_unique=True)] = 0.0
     last = np.searchsorted(cuts.group[some], cuts.group[some], side="right")  # where each one's group ends
     members, moments = region.extended(some, np.arange(len(some))[:, None], last)
     owner = cuts.group[some[members[:, 0]]]
-    settled = (np.bincount(owner, minlength=groups) <= _MOST_PAIRS) & (whole[:, 0] > 0)
-    members, moments = members[settled[owner]], moments[settled[owner]]
+    settled = whole[:, 0] > 0
+    many = settled & (np.bincount(owner, minlength=groups) > _FEW_PAIRS)
+    if many.any():
+        mine = many[owner]
+        near, far, shared = region.ordered(some[members[mine]], moments[mine])
+        places = some[many[cuts.group[some]]]
+        visible[places], settled[many] = region.peeled(places, near, far, shared, alone)
+    few = (settled & ~many)[owner]
+    members, moments = members[few], moments[few]
     pairs = members[:, 0] * len(some) + members[:, 1]
     sign = -1.0
     while len(members):
@@ -246,46 +262,31 @@ def _towards(frames, moments) -> np.ndarray:
 class _Regions:
     """Parts of beams that are common to some obstacles."""
 
-    def __init__(self, cuts: Cuts, beams: Beams, shapes: Shapes):
-        self.cuts, self.beams, self.shapes = cuts, beams, shapes
-        counts, edges = [cuts.count], [cuts.edge]
-        owners = [np.repeat(cuts.beam, cuts.count)]
-        if cuts.window_count is not None and cuts.window_edge is not None:  # windows follow the obstacles
-            beam = np.zeros(len(cuts.window_count), np.int64)
-            beam[cuts.group] = cuts.beam
-            counts.append(cuts.window_count)
-            edges.append(cuts.window_edge)
-            owners.append(np.repeat(beam, cuts.window_count))
-        self.count = np.concatenate(counts)
-        self.first = np.cumsum(self.count) - self.count
-        self.frames = beams.frames
-        frames, edge = self.frames.take(np.concatenate(owners), axis=0), np.concatenate(edges)
-        lines = np.stack([dots(frames[:, k], edge) for k in range(3)])
+    def __init__(self, cuts: Cuts, beams: Beams, shapes: Shapes, groups: int):
+        self.cuts, self.frames = cuts, beams.frames
+        frames = self.frames.take(np.repeat(cuts.beam, cuts.count), axis=0)
+        lines = np.stack([dots(frames[:, k], cuts.edge) for k in range(3)])
         self.lines = np.concatenate([lines, [[1.0], [0.0], [0.0]]], axis=1)  # the last cuts nothing
+        self.count, self.first = cuts.count, np.cumsum(cuts.count) - cuts.count
+        beam = np.zeros(groups, np.int64)
+        beam[cuts.group] = cuts.beam
+        self.shapes, self.shape_of_group = shapes, beams.columns[beam]
+        if cuts.window_count is not None and cuts.window_edge is not None:
+            self.shapes = _within_windows(shapes.take(self.shape_of_group), cuts, self.frames.take(beam, axis=0))
+            self.shape_of_group = np.arange(groups)
+        self.shape = self.shape_of_group[cuts.group]
 
-    def whole(self, groups: int) -> np.ndarray:
+    def whole(self) -> np.ndarray:
         """(g, 3) float: area and first moments of each beam, within its window."""
-        beam = np.empty(groups, np.int64)
-        beam[self.cuts.group] = self.cuts.beam
-        moments = self.shapes.moments[self.beams.columns[beam]]
-        if self.cuts.window_count is not None:
-            some = np.flatnonzero(self.cuts.window_count)
-            moments[some] = self._cut(beam[some], len(self.cuts.beam) + some[:, None])
-        return moments
+        return self.shapes.moments[self.shape_of_group]
 
     def moments(self, members) -> np.ndarray:
         """(m, 3) float: area and first moments of what is common to obstacles ``(m, s)``, on the beams' planes."""
-        if self.cuts.window_count is not None:
-            window = len(self.cuts.beam) + self.cuts.group[members[:, :1]]
-            members = np.concatenate([window, members], axis=1)
-        return self._cut(self.cuts.beam[members[:, -1]], members)
-
-    def _cut(self, beam, members) -> np.ndarray:
         corners = self.shapes.corners
         out = np.empty((len(members), 3))
         lines = self.count[members].sum(axis=1)
-        column = self.beams.columns[beam]
-        many = self.shapes.counts[column] > _FEW_CORNERS
+        shape = self.shape[members[:, 0]]
+        many = self.shapes.counts[shape] > _FEW_CORNERS
         for sides, kind in ((_FEW_CORNERS, ~many), (corners.shape[1], many)):
             mine = np.flatnonzero(kind)
             mine = mine[np.argsort(lines[mine], kind="stable")]
@@ -295,7 +296,7 @@ class _Regions:
                 if end - begin >= _BATCH or (end == len(mine) and end > begin):
                     now = mine[begin:end]
                     bounds = self.lines.take(self._lines_of(members[now], lines[now]).T, axis=1)
-                    out[now] = polygons.convex_moments(corners[:, :sides].take(column[now], axis=2), bounds).T
+                    out[now] = polygons.convex_moments(corners[:, :sides].take(shape[now], axis=2), bounds).T
                     begin = end
         return out
 
@@ -336,16 +337,97 @@ class _Regions:
             row, other = row[known], other[known]
         together = np.concatenate([members[row], other[:, None]], axis=1)
         moments = self.moments(some[together])
-        column = self.beams.columns[self.cuts.beam[some[other]]]
-        real = moments[:, 0] > _NOTHING * self.shapes.moments[column, 0]
+        real = moments[:, 0] > _NOTHING * self.shapes.moments[self.shape[some[other]], 0]
         real = np.flatnonzero(real)
         return together.take(real, axis=0), moments.take(real, axis=0)
+
+    def behind_largest(self, some, alone) -> np.ndarray:
+        """(k,) bool: which obstacles the largest of their group hides, where there are many in it.
+
+        Parameters
+        ----------
+        some : (k,) int
+            Obstacles, by group.
+        alone : (n, 3) float
+            Moments of every obstacle.
+        """
+        group = self.cuts.group[some]
+        begin, end = (np.searchsorted(group, group, side=side) for side in ("left", "right"))
+        order = np.lexsort((-alone[some, 0], group))
+        largest = some[order[begin]]
+        asked = np.flatnonzero((end - begin > _FEW) & (largest != some))
+        pairs = np.stack([some[asked], largest[asked]], axis=1)
+        far, shared = self.farthest(pairs, moments := self.moments(pairs)), moments[:, 0]
+        hidden = np.zeros(len(some), bool)
+        hidden[asked] = (far == some[asked]) & (shared >= (1 - _HIDDEN) * alone[some[asked], 0])
+        return hidden
+
+    def ordered(self, pairs, moments) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of two obstacles ``(m, 2)`` that overlap the nearer and the farther, and the area they have in common."""
+        far = self.farthest(pairs, moments)
+        return pairs.sum(axis=1) - far, far, moments[:, 0]
+
+    def peeled(self, obstacles, near, far, shared, alone) -> tuple[np.ndarray, np.ndarray]:
+        """What shows of obstacles that many others of their beams overlap.
+
+        Parameters
+        ----------
+        obstacles : (k,) int
+            All of some groups.
+        near, far, shared : (m,)
+            As from `ordered`, of these groups.
+        alone : (n, 3) float
+            Moments of every obstacle.
+
+        Returns
+        -------
+        visible : (k, 3) float
+        settled : (g,) bool
+            By group.
+        """
+        groups, group = np.unique(self.cuts.group[obstacles], return_inverse=True)
+        hidden = np.zeros(len(self.cuts.beam), bool)
+        hidden[far[shared >= (1 - _HIDDEN) * alone[far, 0]]] = True
+        mine = np.flatnonzero(~hidden[obstacles])
+        place = np.zeros(len(hidden), np.int64)
+        place[obstacles[mine]] = np.arange(len(mine))
+        real = ~(hidden[near] | hidden[far])
+        depth = layers.depths(place[near[real]], place[far[real]], len(mine))
+        outlines = _flat(self.shapes.corners.take(self.shape_of_group[groups], axis=2))
+        lines_of = self._lines_of(obstacles[mine][:, None], self.count[obstacles[mine]])
+        visible = np.zeros((len(obstacles), 3))
+        visible[mine], settled = layers.peeled(outlines, group[mine], self.lines, lines_of, depth)
+        return visible, settled
 
     def farthest(self, members, moments) -> np.ndarray:
         """(m,) int: of the obstacles ``(m, s)`` that have a region in common, the one seen last."""
         towards = _towards(self.frames.take(self.cuts.beam[members[:, 0]], axis=0), moments)
         distance = np.stack([self.cuts.distance(members[:, k], towards) for k in range(members.shape[1])], axis=1)
         return members[np.arange(len(members)), np.argmax(distance, axis=1)]
+
+
+def _within_windows(shapes: Shapes, cuts: Cuts, frames) -> Shapes:
+    """Outlines of the beams of each group ``(g)``, within their windows."""
+    count, edge = cuts.window_count, cuts.window_edge
+    assert count is not None and edge is not None
+    some = np.flatnonzero(count)
+    first = np.cumsum(count) - count
+    corners = _flat(shapes.corners.take(some, axis=2))
+    for k in range(int(count.max(initial=0))):
+        mine = np.flatnonzero(count[some] > k)
+        line = edge[first[some[mine]] + k]
+        a, b, c = (dots(frames[some[mine], axis], line) for axis in range(3))
+        less = polygons.clip(corners[mine], np.stack([b, c, np.zeros(len(b))], axis=1), -a)
+        corners = polygons.widen(corners, max(corners.shape[1], less.shape[1]))
+        corners[mine] = polygons.widen(less, corners.shape[1])
+    padded = (corners[:, ::-1] == corners[:, -1:]).all(axis=2).cumprod(axis=1).sum(axis=1)
+    counts = corners.shape[1] + 1 - padded
+    return shapes.replaced(some, Shapes.of(corners[:, : int(counts.max(initial=1)), :2], counts))
+
+
+def _flat(corners) -> np.ndarray:
+    """(m, v, 3) float: outlines ``(2, v, m)`` as polygons in space, on the plane z = 0."""
+    return np.concatenate([corners.T, np.zeros((corners.shape[2], corners.shape[1], 1))], axis=2)
 
 
 def _along(height, normal, towards) -> np.ndarray:
