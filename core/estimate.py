@@ -17,7 +17,8 @@ from .geometry import Geometry, sight_of
 from .globe import Globe
 from .nodes import Nodes
 from .parallel import chunks_of_receivers, run_parallel
-from .specular import ChainLimits
+from .scattered import scattered_sight
+from .tracing import ChainLimits
 
 _SHARE = 0.04
 _FEWEST, _MOST = 4, 400
@@ -32,7 +33,7 @@ OF_MERGING = 0.35
 """The same over what patches twice as wide change: errors fall with the square of their width."""
 
 OF_SPREAD = 2.0
-"""The same over the root mean square of what facets get more or less than the one whose receiver they share."""
+"""The same over the root mean square of what facets get more or less than the mean that they share."""
 
 OF_DOUBT = 0.5
 """The same for interpolation, over the surprise of the nodes around."""
@@ -64,7 +65,7 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Facets:
-    """Some facets that share the receiver of another, and what they see more of than that.
+    """Some facets that share a receiver, and what they see more of than its mean.
 
     Attributes
     ----------
@@ -103,7 +104,8 @@ def make_trial(
     bands = max(2, round(geometry.targets.globe.bands / math.sqrt(2)))
     targets = Targets.of(geometry.planes, geometry.cells.patches, Globe.cut_at_horizon(bands))
     coarse = replace(geometry, targets=targets)
-    some = _sample(nodes.sheet)
+    own = np.setdiff1d(np.arange(len(nodes.points)), nodes.shared)
+    some = own[_sample(nodes.sheet[own])]
     cells = np.zeros((len(some), targets.patches.count), np.float32)
     sky = np.zeros((len(some), targets.columns), np.float32)
 
@@ -124,12 +126,10 @@ def make_trial(
 
 
 def _look_from_facets(geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: int) -> Facets:
-    """Look from some of the facets that share a receiver, and from that, on the same globe."""
-    weights, targets = nodes.weights, geometry.targets
-    single = np.flatnonzero(np.diff(weights.start) == 1)
-    node = weights.node[weights.start[single]]
-    others = (np.bincount(weights.node, minlength=len(nodes.points))[node] > 1) & (nodes.element[node] != single)
-    facets, node = single[others], node[others]
+    """Look from some of the facets that share a receiver, and from all of these together."""
+    targets, served = geometry.targets, nodes.weights.turned(nodes.shared)
+    several = np.diff(served.start)[served.rows] > 1
+    facets, node = served.node[several], nodes.shared[served.rows[several]]
     sharing = np.zeros(len(geometry.element_points), bool)
     sharing[facets] = True
     pick = np.unique(np.linspace(0, len(facets) - 1, min(len(facets), _FACETS)).astype(int))
@@ -138,12 +138,10 @@ def _look_from_facets(geometry: Geometry, nodes: Nodes, limits: ChainLimits, thr
 
     def work(number: int, checkpoint) -> None:
         facet, shared = facets[pick[number]], node[pick[number]]
-        for sign, point, of in (
-            (1.0, geometry.element_points[facet], facet),
-            (-1.0, nodes.points[shared], nodes.element[shared]),
-        ):
-            normal = geometry.element_normals[of]
-            found = gather(sight_of(geometry, limits, normal, float(normal @ point)), point[None], targets, checkpoint)
+        point, normal = geometry.element_points[[facet]], geometry.element_normals[facet]
+        its = sight_of(geometry, limits, normal, float(normal @ point[0]))
+        for sign, sight in ((1.0, its), (-1.0, scattered_sight(geometry, limits, nodes.weights.turned([shared])))):
+            found = gather(sight, point, targets, checkpoint)
             cells[number] += sign * found.patches[0]
             sky[number] += sign * found.sky[0]
 

@@ -14,7 +14,9 @@ from .gather import Gathered, gather
 from .geometry import Geometry, sight_of
 from .nodes import Nodes, settled
 from .parallel import chunks_of_receivers, run_parallel
-from .specular import ChainLimits, GroupSight
+from .scattered import scattered_sight
+from .specular import GroupSight
+from .tracing import ChainLimits
 
 _CHUNK_CELLS = 500_000
 """Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
@@ -27,6 +29,9 @@ _ROOM = 1.5
 
 _UNHIDDEN_ROWS = 200
 """Receivers of one plane that are looked from together where nothing stands in the way."""
+
+_SCATTERED = 64
+"""Receivers of many facets each that are looked from together."""
 
 _GROUPS = 32
 _ROWS = 256
@@ -161,9 +166,16 @@ def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, 
     # so many that receivers times beams stay in cache
     most = max(8, _CHUNK_CELLS // max(geometry.targets.globe.count // 2, 1))
     sheets = nodes.sheet
+    shared = members[np.isin(members, nodes.shared)]
+    scattered = [shared[k : k + _SCATTERED] for k in range(0, len(shared), _SCATTERED)]
+    members = np.setdiff1d(members, shared)
     chunks = [members[c] for c in chunks_of_receivers(nodes.points[members], sheets[members], geometry.planes, most)]
 
-    def work(chunk: np.ndarray, checkpoint) -> None:
+    def from_facets(chunk: np.ndarray, checkpoint) -> None:
+        sight = scattered_sight(geometry, limits, nodes.weights.turned(chunk))
+        rows.put(chunk, gather(sight, nodes.points[chunk], geometry.targets, checkpoint))
+
+    def from_one_plane(chunk: np.ndarray, checkpoint) -> None:
         sheet = int(sheets[chunk[0]])
         sight = sights.get(sheet)
         if sight is None:
@@ -173,7 +185,8 @@ def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, 
                 sights[sheet] = sight
         rows.put(chunk, gather(sight, nodes.points[chunk], geometry.targets, checkpoint))
 
-    run_parallel(work, chunks, threads, report)
+    tasks = [(from_one_plane, chunk) for chunk in chunks] + [(from_facets, chunk) for chunk in scattered]
+    run_parallel(lambda task, checkpoint: task[0](task[1], checkpoint), tasks, threads, report)
 
 
 def _gather_unhidden(

@@ -9,11 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from .arrays import dots
-from .globe import Globe, Hemisphere
+from .globe import Globe
 from .patches import Patches
 from .planes import Planes
 from .sighting import Sighting
 from .specular import GroupSight
+from .tracing import RaySight
 from .visibility import OPEN
 
 _BESIDE_BORDERS = 2e-4
@@ -89,12 +90,14 @@ class Gathered:
         return self.sky_direct if self.sky_specular is None else self.sky_direct + self.sky_specular
 
 
-def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[], None] = lambda: None) -> Gathered:
-    """Form factors of receivers that share one plane.
+def gather(
+    sight: GroupSight | RaySight, points, targets: Targets, checkpoint: Callable[[], None] = lambda: None
+) -> Gathered:
+    """Form factors of receivers that share one plane, or have rays of their own.
 
     Parameters
     ----------
-    sight : GroupSight
+    sight : GroupSight or RaySight
     points : (r, 3) float
     targets : Targets
     checkpoint : callable
@@ -122,7 +125,7 @@ def gather(sight: GroupSight, points, targets: Targets, checkpoint: Callable[[],
             _add_mirrored_sky(s, targets, specular)
             _splat(s, parts, targets, specular)
         else:
-            _add_sky(s, targets, sight.hemisphere, direct)
+            _add_sky(s, targets, direct)
             _splat(s, parts, targets, direct)
     if deep is not None:
         patches += deep
@@ -235,10 +238,10 @@ def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.
     return row, grid.grid[base + cells[0] * grid.grid_shape[side, 1] + cells[1]], weight
 
 
-def _add_sky(s: Sighting, targets: Targets, hemisphere: Hemisphere, out: np.ndarray) -> None:
+def _add_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
     if s.rays:
         return
-    parcels = hemisphere.parcels[s.beams.columns]
+    parcels = s.beams.hemisphere.parcels[s.beams.columns]
     free = np.where(s.view.seen == OPEN, s.weights, 0.0)
     above = parcels < targets.sky_parcels
     if len(s.rows) == len(out):

@@ -21,8 +21,9 @@ from .patches import make_patches
 from .planes import Planes
 from .scene import Scene
 from .solids import find_solids
-from .specular import ChainLimits, GroupSight
+from .specular import GroupSight
 from .sunlight import Triangles
+from .tracing import ChainLimits
 
 PATCHES = 1_000
 """Patches that exitance is resolved in, about; runs of cells get more where light is uneven."""

@@ -102,6 +102,13 @@ class Weights:
         entry = np.repeat(self.start[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
         return Weights(np.concatenate([[0], np.cumsum(count)]), self.node[entry], self.weight[entry])
 
+    def turned(self, nodes) -> Weights:
+        """The other way round: elements of each of some nodes ``(k,)``, which the rows are."""
+        number = np.full(int(max(self.node.max(initial=-1), np.max(nodes, initial=-1))) + 1, -1)
+        number[nodes] = np.arange(len(nodes))
+        mine = np.flatnonzero(number[self.node] >= 0)
+        return Weights.of(number[self.node[mine]], self.rows[mine], self.weight[mine], len(nodes))
+
     def replaced(self, element, node, weight) -> Weights:
         """With other entries for some elements."""
         count = len(self.start) - 1
@@ -145,6 +152,8 @@ class Nodes:
         The lattice's values in the middle of cells, some of which are looked at as one; by the first half of each.
     foretold : list of Weights
         What the nodes of the lattice would have if their neighbours along one axis, or the other, told it.
+    shared : (s,) int
+        Nodes that stand for several facets, which do not lie in one plane.
     """
 
     points: np.ndarray
@@ -154,6 +163,7 @@ class Nodes:
     around: Weights
     centres: Weights
     foretold: list[Weights]
+    shared: np.ndarray
 
     @property
     def sheet(self) -> np.ndarray:
@@ -258,6 +268,7 @@ class Nodes:
             around,
             self.centres,
             self.foretold,
+            self.shared,
         )
 
 
@@ -400,6 +411,7 @@ class _Entries:
         none = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
         self.weights, self.around, self.centres = [none], [none], [none]
         self.foretold = [none], [none]
+        self.several = [none[0]]
 
     def add(self, points, element) -> np.ndarray:
         """Numbers of new nodes."""
@@ -423,9 +435,11 @@ class _Entries:
         behind = fracture.element_side[element] >= len(fracture.faces)
         normals = np.where(behind[:, None], -normals, normals)
         group, middle = clustered(points, normals, fracture.element_surface[element], _SHARED)
-        entry = (element, self.add(points[middle], element[middle])[group], np.ones(len(element)))
+        numbers = self.add(points[middle], element[middle])
+        entry = (element, numbers[group], np.ones(len(element)))
         self.weights.append(entry)
         self.around.append(entry)
+        self.several.append(numbers)
 
     def nodes(self, element_sheet) -> Nodes:
         """All that was entered."""
@@ -434,7 +448,7 @@ class _Entries:
         on_lattices = 1 + max(int(entries[-1][0].max(initial=-1)) for entries in self.foretold)
         foretold = [_joined(entries, on_lattices) for entries in self.foretold]
         points, elements = np.concatenate(self.points), np.concatenate(self.elements)
-        return Nodes(points, elements, element_sheet, weights, around, centres, foretold)
+        return Nodes(points, elements, element_sheet, weights, around, centres, foretold, np.concatenate(self.several))
 
 
 def _joined(entries: list, count: int) -> Weights:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -77,6 +78,14 @@ class Outlines:
         if self.solids is None:
             return np.zeros(len(self.vertices), bool)
         return self.solids.unseen_backs(points, normal)
+
+    def ways(self, o: int, front: bool, cosine: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+        """How light goes on from a side of outline ``o`` where it comes at cosines ``(n,)``, and which share of it."""
+        material = self.materials[o]
+        if material.is_specular and (front or self.two_sided[o] or material.reflects_both_sides):
+            yield "mirror", material.specular_at(cosine)
+        if material.is_transparent:
+            yield "through", material.transmittance_at(cosine)
 
     @cached_property
     def any_specular(self) -> bool:

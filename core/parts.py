@@ -37,7 +37,8 @@ _SLIVER = 0.1
 _TWO_LAYERS = 1.5
 """Shares that sum to more are of obstacles before each other, where no corner closes a single layer."""
 
-_SAME_PLANE = 1e-9
+_SAME_PLANE, _NOUGHT = 1e-9, 1e-12
+"""Heights and normals that differ by this share of the largest are of one plane; so much where all are nought."""
 
 _SAME_EDGE = 1e-4
 """Shares of two obstacles at one edge that sum to 1 this closely belong to obstacles that share the edge."""
@@ -129,25 +130,28 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
 
 def _in_one_plane(crossed: Crossed, starts: np.ndarray, which: np.ndarray, heights, obstacles: Obstacles) -> np.ndarray:
     """(w,) bool: whether all obstacles of some groups that begin at ``starts`` lie in one plane, in one layer."""
-    sizes = np.diff(np.append(starts, len(crossed.row)))
-    rows = np.flatnonzero(np.repeat(which, sizes))
-    begin = np.cumsum(sizes[which]) - sizes[which]
+    rows, begin = _members(len(crossed.row), starts, which)
     alike = np.ones(len(begin), bool)
     if len(begin):
         row, obstacle = crossed.row[rows], crossed.obstacle[rows]
         for values in (pick(heights, row, obstacle), *obstacles.normals[obstacle].T):
             apart = np.maximum.reduceat(values, begin) - np.minimum.reduceat(values, begin)
-            alike &= apart <= _SAME_PLANE * np.maximum.reduceat(np.abs(values), begin) + _SAME_PLANE * 1e-3
+            alike &= apart <= _SAME_PLANE * np.maximum.reduceat(np.abs(values), begin) + _NOUGHT
     return alike
 
 
 def _group_sums(values: np.ndarray, starts: np.ndarray, which: np.ndarray) -> np.ndarray:
     """(w, c) float: sums of values ``(n, c)`` over some of the groups that begin at ``starts``."""
-    rows = np.flatnonzero(np.repeat(which, np.diff(np.append(starts, len(values)))))
+    rows, begin = _members(len(values), starts, which)
     if not len(rows):
         return np.zeros((0, values.shape[1]))
-    sizes = np.diff(np.append(starts, len(values)))[which]
-    return np.add.reduceat(values.take(rows, axis=0), np.cumsum(sizes) - sizes, axis=0)
+    return np.add.reduceat(values.take(rows, axis=0), begin, axis=0)
+
+
+def _members(count: int, starts: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which of ``count`` items are of some of the groups that begin at ``starts``, and where each begins there."""
+    sizes = np.diff(np.append(starts, count))
+    return np.flatnonzero(np.repeat(which, sizes)), np.cumsum(sizes[which]) - sizes[which]
 
 
 def _cuts(crossed: Crossed, candidates: Candidates, eye: Eye, beams: Beams, obstacles: Obstacles):

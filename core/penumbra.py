@@ -19,9 +19,9 @@ from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace
 from .screens import Pieces, Screens
-from .specular import DEEPEST_CHAIN
 from .sun import Sun
 from .sunlight import Sunlight, Triangles, trace_sun, wide
+from .tracing import DEEPEST_CHAIN
 
 _NARROW = 0.7
 """Faces up to this many penumbrae wide have the disc clipped at their points; wider ones are clipped themselves."""

@@ -23,9 +23,9 @@ from .options import Options, checked_memory, checked_scene, checked_threads
 from .planes import find_planes
 from .scene import Scene
 from .skips import needless
-from .specular import ChainLimits, exact_mirrors
 from .stages import Progress, Recorder, Stage
 from .store import load_transfer
+from .tracing import ChainLimits, exact_mirrors
 from .transfer import LOOKING, Transfer
 
 logger = logging.getLogger(__name__)

@@ -30,7 +30,7 @@ from .blockers import (
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
-from .specular import ChainLimits
+from .tracing import ChainLimits
 from .unhidden import whole_form_factors
 
 _FAINT = 1e-4

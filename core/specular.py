@@ -15,15 +15,12 @@ import numpy as np
 from .arrays import onto
 from .facets import before
 from .globe import Hemisphere
-from .materials import Material
 from .outlines import Outlines
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
 from .sighting import Rays, Sighting, ray_sighting
+from .tracing import DEEPEST_CHAIN, ChainLimits, Tracer
 from .tree import Tree
 from .visibility import Partial, look
-
-DEEPEST_CHAIN = 200
-"""No chain is followed further, even between perfect mirrors."""
 
 _FEW_BEAMS = 5_000
 """Fewer are followed one by one, after two mirrors or panes, without regard to edges that cross them."""
@@ -31,52 +28,11 @@ _FEW_BEAMS = 5_000
 _LOOKED_INTO = 4
 """So are all after more mirrors or panes than this, which show little light each."""
 
-_MOST_IMAGES = 80
-_DEEPEST_IMAGE = 40
-_WALLS_OF_BOX = 6
-
 _WINDOWS = 2
 """Earlier mirrors whose edges bound what beams show in part."""
 
 _WITHIN = 4e-5
 """Angle from a mirror's edge that centres of parts keep [rad], so that nothing that stands at the edge is before it."""
-
-
-@dataclass
-class ChainLimits:
-    """When to stop following a chain.
-
-    Attributes
-    ----------
-    cutoff : float
-        Smallest product of reflectances and transmittances that is still followed.
-    exact_mirrors : int
-        Up to this many mirrors on the way, bright polygons are gathered exactly (see `sources`).
-    """
-
-    cutoff: float = 1e-3
-    exact_mirrors: int = 0
-
-    def kind(self, mirrors: np.ndarray) -> np.ndarray:
-        """0, 1 or the first number beyond `exact_mirrors`: what sightings that share a treatment are known by."""
-        return np.where(mirrors > self.exact_mirrors, self.exact_mirrors + 1, np.minimum(mirrors, 1))
-
-
-def exact_mirrors(outlines: Outlines) -> int:
-    """How many mirrors on the way leave images few enough to be looked for one by one.
-
-    Between n mirrors there are at most n (n − 1)^(k − 1) images of order k; between up to six, which will mostly be
-    walls of a box that meet at right angles, about 4 k² + 2.
-    """
-    n = sum(m.is_specular for m in outlines.materials)
-    images, order = 0, 0
-    while order < _DEEPEST_IMAGE:
-        every = n * max(n - 1, 1) ** order
-        images += min(every, 4 * (order + 1) ** 2 + 2) if n <= _WALLS_OF_BOX else every
-        if order and images > _MOST_IMAGES:
-            break
-        order += 1
-    return order
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +150,7 @@ class GroupSight:
         none = beams.take(np.zeros(0, np.int64))
         horizon = HalfSpace(hemisphere.normal, self.offset)
         unseen_backs = self.outlines.unseen_backs(points, hemisphere.normal)
-        left: list[Rays] = []
+        tracer, left = Tracer(self.outlines, self.limits), list[Rays]()
         stack = [(np.arange(len(points)), points, horizon, (), beams, weights, None, 1.0, 0, ())]
         while stack:
             rows, origin, horizon, beyond, beams, weights, partial, throughput, mirrors, chain = stack.pop()
@@ -225,55 +181,14 @@ class GroupSight:
                     np.full(len(found.row), len(chain)),
                 )
                 yield ray_sighting(self.outlines, rays, found.outline, mirrors, none)
-                left += self._after(rays, found.outline, found.distance, truncated)
+                left += tracer.after(rays, found.outline, found.distance, truncated)
             sighting = Sighting(
                 rows, origin, horizon.normal, beams, obstacles, view, weights, mirrors, self.outlines, partial
             )
             yield sighting
             if self.outlines.any_specular:
                 stack += self._continue(sighting, horizon, throughput, chain, truncated, left)
-        yield from self._trace(left, truncated, checkpoint)
-
-    def _trace(self, left: list[Rays], truncated, checkpoint) -> Iterator[Sighting]:
-        """Follow rays one by one, from where the mirrored view was too narrow to be worth sharing."""
-        rays = Rays.joined(left)
-        none = Beams.of(self.hemisphere).take(np.zeros(0, np.int64))
-        while len(rays.rows):
-            checkpoint()
-            flight = self.outlines.rays.through_mirrors(
-                rays.points,
-                rays.directions,
-                rays.throughput,
-                rays.depth,
-                self.outlines.plain_mirrors,
-                self.limits.cutoff,
-                DEEPEST_CHAIN,
-            )
-            rays = rays.flown(flight)
-            truncated += np.bincount(rays.rows[flight.faint], rays.weights[flight.faint], minlength=len(truncated))
-            outline, distance = flight.outline, flight.distance
-            kinds = np.where(flight.faint, -1, self.limits.kind(rays.mirrors))
-            for kind in np.unique(kinds[kinds >= 0]):
-                mine = np.flatnonzero(kinds == kind)
-                yield ray_sighting(self.outlines, rays.take(mine), outline[mine], int(kind), none)
-            rays = Rays.joined(self._after(rays, outline, distance, truncated))
-
-    def _after(self, rays: Rays, outline, distance, truncated) -> list[Rays]:
-        """Rays that met outlines ``(n,)``, after the mirrors and panes among these."""
-        if not self.outlines.any_specular:
-            return []
-        met = np.flatnonzero(outline >= 0)
-        place = rays.points[met] + distance[met, None] * rays.directions[met]
-        onward = []
-        for o in np.unique(outline[met]):
-            material = self.outlines.materials[o]
-            if not (material.is_specular or material.is_transparent):
-                continue
-            here = np.flatnonzero(outline[met] == o)
-            here_rays = rays.take(met[here])
-            cosine = onto(here_rays.directions, self.outlines.normals[o])
-            onward += self._onward(here_rays, place[here], int(o), cosine < 0, cosine, truncated)
-        return onward
+        yield from tracer.trace(left, truncated, checkpoint, none)
 
     def _cut(self, chain, half_spaces) -> Obstacles:
         if chain not in self._obstacles:
@@ -307,7 +222,7 @@ class GroupSight:
                 side = (s.view.heights[:, k] < 0) == front
                 if not side.any():
                     continue
-                for kind, share in self._ways(material, int(o), front, arriving.cosine):
+                for kind, share in self.outlines.ways(int(o), front, arriving.cosine):
                     onward = arriving.weighted(np.where(side[:, None], share[None, :], 0.0))
                     if onward is None:
                         continue
@@ -364,23 +279,3 @@ class GroupSight:
             # of the mirrors before, the last few: what is seen through many lies well inside the first
             planes = np.concatenate([window[:, -_WINDOWS * planes.shape[1] :], planes], axis=1)
         return Partial(onward.row, onward.beam, direction, planes)
-
-    def _onward(self, rays: Rays, places, o: int, front, cosine, truncated) -> list[Rays]:
-        """Rays that met an outline at ``places``, after it: those bright enough to follow."""
-        onward = []
-        for side in (True, False):
-            mine = np.flatnonzero(front == side)
-            if not len(mine):
-                continue
-            for kind, share in self._ways(self.outlines.materials[o], o, side, cosine[mine]):
-                after = rays.take(mine).onward(places[mine], share, self.outlines.normals[o], kind)
-                kept = (after.throughput >= self.limits.cutoff) & (after.depth < DEEPEST_CHAIN)
-                np.add.at(truncated, after.rows[~kept], after.weights[~kept])
-                onward.append(after.take(np.flatnonzero(kept)))
-        return onward
-
-    def _ways(self, material: Material, o: int, front: bool, cosine: np.ndarray):
-        if material.is_specular and (front or self.outlines.two_sided[o] or material.reflects_both_sides):
-            yield "mirror", material.specular_at(cosine)
-        if material.is_transparent:
-            yield "through", material.transmittance_at(cosine)

@@ -28,8 +28,8 @@ from .nodes import Nodes, Weights
 from .options import Options
 from .planes import find_planes
 from .scene import Scene
-from .specular import ChainLimits, exact_mirrors
 from .stages import Stage
+from .tracing import ChainLimits, exact_mirrors
 from .transfer import Transfer
 from .writing import complete
 
@@ -199,6 +199,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
         weights[1],
         lattice.centres,
         lattice.foretold,
+        lattice.shared,
     )
     specular_rows = array("specular_rows", np.int64, None, below=count)
     deep_rows = array("deep_rows", np.int64, None, below=count)

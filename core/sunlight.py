@@ -15,7 +15,7 @@ import numpy as np
 from . import polygons
 from .outlines import Outlines
 from .projection import reflect
-from .specular import DEEPEST_CHAIN
+from .tracing import DEEPEST_CHAIN
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,8 +25,8 @@ from .options import Options, checked_scene
 from .planes import find_planes
 from .scene import Scene
 from .sky import UniformSky
-from .specular import ChainLimits
 from .stages import Progress, Stage
+from .tracing import ChainLimits
 
 if TYPE_CHECKING:
     from .annual import Annual

@@ -14,7 +14,7 @@ from luzespecular.globe import Globe
 from luzespecular.grid import Grid
 from luzespecular.nearness import closeness, near_edges
 from luzespecular.planes import find_planes
-from luzespecular.specular import ChainLimits
+from luzespecular.tracing import ChainLimits
 
 FLOOR = Grid(0, 10, 20, np.zeros(3), np.array([0, 0.1, 0]), np.array([0.1, 0, 0]))
 """Two metres by one, 10 rows along y and 20 columns along x."""

@@ -10,7 +10,7 @@ from luzespecular import polygons
 from luzespecular.materials import Material
 from luzespecular.outlines import Outlines
 from luzespecular.sources import Source, gather_sources
-from luzespecular.specular import ChainLimits
+from luzespecular.tracing import ChainLimits
 
 SIZE = np.array([4.0, 3.0, 2.5])
 BEYOND = 500.0

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import luzespecular as luz
 from luzespecular import polygons
 from luzespecular.sources import Source, even_illuminance, gather_sources
-from luzespecular.specular import ChainLimits
+from luzespecular.tracing import ChainLimits
 
 GLOW = luz.Material(exitance=1000.0)
 UP = np.array([0.0, 0.0, 1.0])

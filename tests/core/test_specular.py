@@ -11,7 +11,7 @@ from luzespecular.geometry import make_geometry
 from luzespecular.globe import Globe
 from luzespecular.outlines import Outlines
 from luzespecular.planes import find_planes
-from luzespecular.specular import ChainLimits, exact_mirrors
+from luzespecular.tracing import ChainLimits, exact_mirrors
 
 UP, DOWN, NORTH, SOUTH = np.array([[0, 0, 1.0], [0, 0, -1], [0, 1, 0], [0, -1, 0]])
 CLEAR = luz.Daylight(sky=luz.CIESky(12, sun_altitude=40, sun_azimuth=130, horizontal_illuminance=10_000))

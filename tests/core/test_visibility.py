@@ -12,7 +12,8 @@ from luzespecular import polygons
 from luzespecular.globe import Globe
 from luzespecular.materials import Material
 from luzespecular.outlines import Outlines
-from luzespecular.specular import ChainLimits, GroupSight
+from luzespecular.specular import GroupSight
+from luzespecular.tracing import ChainLimits
 from luzespecular.visibility import OPEN
 
 GLOBES = {bands: Globe(bands) for bands in (24, 60)}

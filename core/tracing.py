@@ -1,0 +1,162 @@
+"""Single rays, followed one by one through mirrors and panes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arrays import onto
+from .outlines import Outlines
+from .projection import Beams
+from .sighting import Rays, Sighting, ray_sighting
+
+DEEPEST_CHAIN = 200
+"""No chain is followed further, even between perfect mirrors."""
+
+_MOST_IMAGES = 80
+_DEEPEST_IMAGE = 40
+_WALLS_OF_BOX = 6
+
+
+@dataclass
+class ChainLimits:
+    """When to stop following a chain.
+
+    Attributes
+    ----------
+    cutoff : float
+        Smallest product of reflectances and transmittances that is still followed.
+    exact_mirrors : int
+        Up to this many mirrors on the way, bright polygons are gathered exactly (see `sources`).
+    """
+
+    cutoff: float = 1e-3
+    exact_mirrors: int = 0
+
+    def kind(self, mirrors: np.ndarray) -> np.ndarray:
+        """0, 1 or the first number beyond `exact_mirrors`: what sightings that share a treatment are known by."""
+        return np.where(mirrors > self.exact_mirrors, self.exact_mirrors + 1, np.minimum(mirrors, 1))
+
+
+def exact_mirrors(outlines: Outlines) -> int:
+    """How many mirrors on the way leave images few enough to be looked for one by one.
+
+    Between n mirrors there are at most n (n − 1)^(k − 1) images of order k; between up to six, which will mostly be
+    walls of a box that meet at right angles, about 4 k² + 2.
+    """
+    n = sum(m.is_specular for m in outlines.materials)
+    images, order = 0, 0
+    while order < _DEEPEST_IMAGE:
+        every = n * max(n - 1, 1) ** order
+        images += min(every, 4 * (order + 1) ** 2 + 2) if n <= _WALLS_OF_BOX else every
+        if order and images > _MOST_IMAGES:
+            break
+        order += 1
+    return order
+
+
+@dataclass(frozen=True, eq=False)
+class Tracer:
+    """Follows rays among outlines.
+
+    Attributes
+    ----------
+    outlines : Outlines
+    limits : ChainLimits
+    """
+
+    outlines: Outlines
+    limits: ChainLimits
+
+    def trace(
+        self, left: list[Rays], truncated: np.ndarray, checkpoint: Callable[[], None], none: Beams
+    ) -> Iterator[Sighting]:
+        """Follow rays one by one.
+
+        Parameters
+        ----------
+        left : list of Rays
+        truncated : (r,) float
+            Gets the weight of what is cut off, in place.
+        checkpoint : callable
+        none : Beams
+            No beams.
+        """
+        rays = Rays.joined(left)
+        while len(rays.rows):
+            checkpoint()
+            flight = self.outlines.rays.through_mirrors(
+                rays.points,
+                rays.directions,
+                rays.throughput,
+                rays.depth,
+                self.outlines.plain_mirrors,
+                self.limits.cutoff,
+                DEEPEST_CHAIN,
+            )
+            rays = rays.flown(flight)
+            truncated += np.bincount(rays.rows[flight.faint], rays.weights[flight.faint], minlength=len(truncated))
+            outline, distance = flight.outline, flight.distance
+            kinds = np.where(flight.faint, -1, self.limits.kind(rays.mirrors))
+            for kind in np.unique(kinds[kinds >= 0]):
+                mine = np.flatnonzero(kinds == kind)
+                yield ray_sighting(self.outlines, rays.take(mine), outline[mine], int(kind), none)
+            rays = Rays.joined(self.after(rays, outline, distance, truncated))
+
+    def after(self, rays: Rays, outline, distance, truncated) -> list[Rays]:
+        """Rays that met outlines ``(n,)``, after the mirrors and panes among these."""
+        if not self.outlines.any_specular:
+            return []
+        met = np.flatnonzero(outline >= 0)
+        place = rays.points[met] + distance[met, None] * rays.directions[met]
+        onward = []
+        for o in np.unique(outline[met]):
+            material = self.outlines.materials[o]
+            if not (material.is_specular or material.is_transparent):
+                continue
+            here = np.flatnonzero(outline[met] == o)
+            here_rays = rays.take(met[here])
+            cosine = onto(here_rays.directions, self.outlines.normals[o])
+            onward += self._onward(here_rays, place[here], int(o), cosine < 0, cosine, truncated)
+        return onward
+
+    def _onward(self, rays: Rays, places, o: int, front, cosine, truncated) -> list[Rays]:
+        """Rays that met an outline at ``places``, after it: those bright enough to follow."""
+        onward = []
+        for side in (True, False):
+            mine = np.flatnonzero(front == side)
+            if not len(mine):
+                continue
+            for kind, share in self.outlines.ways(o, side, cosine[mine]):
+                after = rays.take(mine).onward(places[mine], share, self.outlines.normals[o], kind)
+                kept = (after.throughput >= self.limits.cutoff) & (after.depth < DEEPEST_CHAIN)
+                np.add.at(truncated, after.rows[~kept], after.weights[~kept])
+                onward.append(after.take(np.flatnonzero(kept)))
+        return onward
+
+
+@dataclass(frozen=True, eq=False)
+class RaySight:
+    """What receivers see along rays of their own.
+
+    Attributes
+    ----------
+    outlines : Outlines
+    limits : ChainLimits
+    rays : Rays
+        From all of them, ``rows`` being their numbers.
+    none : Beams
+        No beams.
+    """
+
+    outlines: Outlines
+    limits: ChainLimits
+    rays: Rays
+    none: Beams
+
+    def sightings(self, points, checkpoint: Callable[[], None] = lambda: None) -> tuple[Iterator[Sighting], np.ndarray]:
+        """As `GroupSight.sightings`."""
+        truncated = np.zeros(len(points))
+        return Tracer(self.outlines, self.limits).trace([self.rays], truncated, checkpoint, self.none), truncated
