@@ -81,7 +81,14 @@ class Geometry:
         number = surfaces.index(name)
         if not self.wanted[number]:
             raise SceneError(f"Faces of '{name}' were not computed: prepare with it among the receivers")
-        return np.flatnonzero(self.fracture.face_surface[self.reported] == number)
+        return self._faces_by_surface[number].copy()
+
+    @cached_property
+    def _faces_by_surface(self) -> list[np.ndarray]:
+        """Reported faces of each surface, in ascending order."""
+        surface = self.fracture.face_surface[self.reported]
+        ends = np.cumsum(np.bincount(surface, minlength=len(self.planes.surfaces)))
+        return np.split(np.argsort(surface, kind="stable"), ends[:-1])
 
     @property
     def element_surface(self) -> np.ndarray:

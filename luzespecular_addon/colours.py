@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -108,8 +109,7 @@ def corner_colours(values: ArrayLike, corners: ArrayLike, scale: ColourScale) ->
         The scale to colour by.
     """
     values = np.asarray(values, float)
-    table = np.ones((_TABLE, 4), np.float32)
-    table[:, :3] = srgb_to_linear(scale_colours(scale.name, np.linspace(0.0, 1.0, _TABLE)))
+    table = _linear_table(scale.name)
     place = np.rint(np.nan_to_num(scale.position(values)) * (_TABLE - 1)).astype(np.int64)
     missing = np.repeat(np.isnan(values), corners)
     colours = np.repeat(table[place], corners, axis=0)
@@ -117,6 +117,14 @@ def corner_colours(values: ArrayLike, corners: ArrayLike, scale: ColourScale) ->
         hatch = srgb_to_linear(NOT_COMPUTED_SRGB).astype(np.float32)
         colours[missing, :3] = hatch[np.flatnonzero(missing) % 2]
     return colours
+
+
+@lru_cache
+def _linear_table(name: str) -> NDArray[np.float32]:
+    """Scene-linear RGBA of a scale from end to end, (_TABLE, 4)."""
+    table = np.ones((_TABLE, 4), np.float32)
+    table[:, :3] = srgb_to_linear(scale_colours(name, np.linspace(0.0, 1.0, _TABLE)))
+    return table
 
 
 def automatic_range(values: ArrayLike, weights: ArrayLike, logarithmic: bool) -> tuple[float, float]:

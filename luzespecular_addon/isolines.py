@@ -99,30 +99,43 @@ def parse_levels(text: str) -> list[float]:
     return sorted(levels)
 
 
+_CANDIDATES = 1_500
+"""Pieces that are looked at for labels, about."""
+
+
 def label_edges(lines: IsoLines, spacing: float, most: int = 96) -> NDArray[np.intp]:
     """Choose the pieces that carry labels: none where lines crowd, no two nearer than `spacing`, at most `most`.
 
     Labels of one level keep twice the distance; levels take turns.
     """
     middles = lines.ends.mean(axis=1)
+    rows = np.flatnonzero(~_crowded(middles, lines.values, spacing / 3.0))
+    rows = rows[:: 1 + len(rows) // _CANDIDATES]
+    places, values = middles[rows], lines.values[rows]
     chosen: list[int] = []
-    free = ~_crowded(middles, lines.values, spacing / 3.0)
-    levels = list(np.unique(lines.values))
-    while levels and len(chosen) < most:
-        for level in list(levels):
-            candidates = np.flatnonzero(free & (lines.values == level))
+    free = np.ones(len(rows), bool)
+    of_level = {level: np.flatnonzero(values == level) for level in np.unique(values)}
+    while of_level and len(chosen) < most:
+        for level, members in list(of_level.items()):
+            candidates = members[free[members]]
             if not len(candidates):
-                levels.remove(level)
+                del of_level[level]
                 continue
             # The piece nearest to the middle of what is left of the level: away from the ends of its lines.
-            centre = np.median(middles[candidates], axis=0)
-            best = candidates[np.argmin(np.linalg.norm(middles[candidates] - centre, axis=1))]
-            chosen.append(int(best))
-            apart = np.linalg.norm(middles - middles[best], axis=1)
-            free &= apart >= np.where(lines.values == level, 2.0 * spacing, spacing)
+            middle = len(candidates) // 2
+            centre = np.partition(places[candidates], middle, axis=0)[middle]
+            best = candidates[np.argmin(_squares(places[candidates] - centre))]
+            chosen.append(int(rows[best]))
+            near = _squares(places - places[best])
+            free &= near >= spacing**2
+            free[members] &= near[members] >= 4.0 * spacing**2
             if len(chosen) == most:
                 break
     return np.array(sorted(chosen), np.intp)
+
+
+def _squares(vectors: NDArray) -> NDArray[np.float64]:
+    return np.einsum("nc,nc->n", vectors, vectors)
 
 
 def _crowded(places: NDArray, values: NDArray, width: float) -> NDArray[np.bool_]:

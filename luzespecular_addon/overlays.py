@@ -14,6 +14,9 @@ _HALO, _CORE = (0.0, 0.0, 0.0, 0.55), (1.0, 1.0, 1.0, 0.95)
 _HALO_WIDTH, _CORE_WIDTH = 3.0, 1.3
 _MARK = 4
 _DEPTH_TOLERANCE = 1e-6
+_NEARER = 0.004
+"""Of the distance; a pixel is some 0.001 of it wide."""
+
 _LABEL_ROOM = np.array([90.0, 36.0])
 """Least distance of labels across and along the screen [pixels at a resolution scale of 1]."""
 
@@ -48,18 +51,32 @@ def _draw_lines() -> None:
     if space.shading.show_backface_culling:  # lines go with their faces
         facing = _faces_viewer(ends.mean(axis=1), normals)
         ends, values, labels = ends[facing], values[facing], labels[facing]
+    ends = _nearer(ends)
     chosen = np.flatnonzero(labels)
     places, levels = ends[chosen].mean(axis=1), values[chosen]
     labelled = _labelled(places, levels)
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("LESS_EQUAL")
+    writes_depth = gpu.state.depth_mask_get()
+    gpu.state.depth_mask_set(False)  # else halos hide parts of their own cores
     drawing.lines(ends, _HALO_WIDTH, _HALO)
     drawing.lines(ends, _CORE_WIDTH, _CORE)
+    gpu.state.depth_mask_set(writes_depth)
     gpu.state.depth_test_set("NONE")
     with drawing.in_pixels():
         for row, (x, y) in labelled:
             drawing.tag(label(float(levels[row])), x, y)
     gpu.state.blend_set("NONE")
+
+
+def _nearer(ends: np.ndarray) -> np.ndarray:
+    """Move lines a little towards the viewer, which none sees: thick lines would dip into faces that lean away."""
+    view = bpy.context.region_data
+    from_view = view.view_matrix.inverted()
+    if view.is_perspective:
+        return ends + _NEARER * (np.array(from_view.translation) - ends)
+    width = 2.0 / view.window_matrix[0][0]
+    return ends + _NEARER * width * np.array(from_view.to_3x3().col[2])
 
 
 def _faces_viewer(places: np.ndarray, normals: np.ndarray) -> np.ndarray:

@@ -29,6 +29,7 @@ class LUZESPECULAR_PT_accuracy(Sidebar, bpy.types.Panel):
         if accuracy.fineness == "ERROR":
             layout.prop(accuracy, "error")
         elif accuracy.fineness == "EXPERT":
+            layout.use_property_split = False  # names are too long to stand beside the numbers
             column = layout.column(align=True)
             column.prop(accuracy, "bands")
             column.prop(accuracy, "max_area")

@@ -203,7 +203,9 @@ def _draw_table(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
     _draw_columns(row, iface_("Surface", CONTEXT), *heads)
     if len(results.rows) > _MOST_ROWS:
         row.label(text="", icon="BLANK1")  # as wide as the list's scroll bar
-    rows = min(max(len(results.rows), 2), _MOST_ROWS)
+    else:
+        row.separator(factor=0.5)  # as wide as its border
+    rows = min(len(results.rows) + 1, _MOST_ROWS)
     layout.template_list("LUZESPECULAR_UL_surfaces", "", results, "rows", results, "active_row", rows=rows)
     if 0 <= results.active_row < len(results.rows):
         chosen = results.rows[results.active_row]

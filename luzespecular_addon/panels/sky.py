@@ -47,17 +47,18 @@ class LUZESPECULAR_PT_sky(Sidebar, bpy.types.Panel):
                 row.active = sky.use_sun
                 row.prop(sky, "sun_illuminance")
         else:
-            _draw_model(layout.box().column(align=True), settings)
+            _draw_model(layout, settings)
         row = layout.row()
         row.use_property_split = False  # the slider shows its long name inside
         row.prop(sky, "ground_reflectance")
 
 
-def _draw_model(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def _draw_model(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     try:
         by_sky, by_sun = light.illuminances(settings.sky, light.sun_place(settings.site))
     except BadInput:
         return  # Site & Time says what is wrong
+    column = layout.box().column(align=True)
     for text, value in ((iface_("Sky: {lux:,.0f} lx"), by_sky), (iface_("Sun: {lux:,.0f} lx facing it"), by_sun)):
         column.label(text=text.format(lux=value).replace(",", " "), translate=False)
 
