@@ -13,9 +13,10 @@ from typing import Protocol
 
 import numpy as np
 
-from . import polygons, unhidden
+from . import polygons
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
+from .received import Received
 
 _SLIVER = 1e-9
 """Over the extent of all at hand: what is narrower makes no difference, as where two only touch."""
@@ -126,8 +127,18 @@ class Overlaps:
     centre: np.ndarray
 
     @classmethod
-    def of(cls, outer, inner, corners, may=True) -> Overlaps:
-        """Of polygons ``(k, w, 3)`` and ``(s, v, 3)`` that ``may`` (s, k), as seen from between ``corners`` (c, 3)."""
+    def of(cls, outer, inner, corners, may, facing) -> Overlaps:
+        """Those that may overlap as seen from anywhere between corners.
+
+        Parameters
+        ----------
+        outer, inner : (k, w, 3) and (s, v, 3) float
+        corners : (c, 3) float
+        may : (s, k) bool
+            Pairs that count.
+        facing : (k, c) float
+            Positive where a corner is before an outer polygon, negative behind; 0 in its plane.
+        """
         centre = corners.mean(axis=0)
         outer, inner, eye = outer - centre, inner - centre, corners - centre
         extent = max(float(np.abs(part).max(initial=1e-300)) for part in (outer, inner, eye))
@@ -136,8 +147,12 @@ class Overlaps:
         apart = (outer.min(axis=1) > high[:, None]) | (outer.max(axis=1) < low[:, None])
         number, which = np.nonzero(~apart.any(axis=2) & may)
         forms, sides = _forms(outer[which], inner[number], extent)
+        free = sides <= 1e-12 * extent
+        near = np.flatnonzero(_within(forms, free, corners - centre, facing[which]))
+        number, which = number[near], which[near]
         back, along = _forms(inner[number], outer[which], extent)
-        return cls(which, number, forms, back, sides <= 1e-12 * extent, along <= 1e-12 * extent, centre)
+        found = cls(which, number, forms[near], back, free[near], along <= 1e-12 * extent, centre)
+        return found.take(np.flatnonzero(found._reached(corners)))
 
     def take(self, index) -> Overlaps:
         """Some of the pairs."""
@@ -156,13 +171,14 @@ class Overlaps:
 
         ``facing`` (k, any) tells whether points are before or behind the outer polygons, or in their planes.
         """
-        eye = self._places(corners)
-        before, behind = (facing > 0).any(axis=1)[self.outer], (facing < 0).any(axis=1)[self.outer]
-        heights = (self.forms.reshape(-1, 4) @ eye).reshape(*self.free.shape, -1)
-        may = ((heights.max(axis=2) > _SLIVER) | self.free).all(axis=1) & before
-        may |= ((heights.min(axis=2) < -_SLIVER) | self.free).all(axis=1) & behind
-        reach = (self.back.reshape(-1, 4) @ eye).reshape(*self.loose.shape, -1).max(axis=2)
-        return may & ((reach > _SLIVER) | self.loose).all(axis=1)
+        return _within(self.forms, self.free, corners - self.centre, facing[self.outer]) & self._reached(corners)
+
+    def _reached(self, corners) -> np.ndarray:
+        """(q,) bool: outer polygons that reach within all inner edges."""
+        reach = (self.back.reshape(-1, 4) @ _places(corners - self.centre)).reshape(
+            *self.loose.shape, self.back.shape[2] * len(corners)
+        )
+        return ((reach.max(axis=2) > _SLIVER) | self.loose).all(axis=1)
 
     def seen(self, points, facing) -> tuple[np.ndarray, np.ndarray]:
         """How each pair overlaps.
@@ -181,7 +197,7 @@ class Overlaps:
         crossing : (q, r) bool
             A part of it does.
         """
-        eye = self._places(points)
+        eye = _places(points - self.centre)
         within, crossing = np.zeros((2, len(self.outer), len(points)), bool)
         edges, corners = self.forms.shape[1:3]
         step = max(1, _VOLUMES // max(1, edges * corners * len(points)))
@@ -204,8 +220,18 @@ class Overlaps:
         crossing &= ~within
         return within, crossing
 
-    def _places(self, points) -> np.ndarray:
-        return np.concatenate([(points - self.centre).T, np.ones((1, len(points)))])
+
+def _places(points) -> np.ndarray:
+    return np.concatenate([points.T, np.ones((1, len(points)))])
+
+
+def _within(forms, free, corners, facing) -> np.ndarray:
+    """(q,) bool: inner polygons that reach within all outer edges as seen from somewhere between corners."""
+    before, behind = (facing > 0).any(axis=1), (facing < 0).any(axis=1)
+    heights = (forms.reshape(-1, 4) @ _places(corners)).reshape(*free.shape, forms.shape[2] * len(corners))
+    may = ((heights.max(axis=2) > _SLIVER) | free).all(axis=1) & before
+    may |= ((heights.min(axis=2) < -_SLIVER) | free).all(axis=1) & behind
+    return may
 
 
 def _forms(edged, others, extent: float) -> tuple[np.ndarray, np.ndarray]:
@@ -394,17 +420,24 @@ class Standing:
     def of(cls, blockers: Blockers, shapes, plane, corners, tolerance: float) -> Standing:
         """Those of the blockers that matter to shapes on planes ``(s,)``."""
         may = (blockers.plane == plane[:, None]) | (blockers.plane < 0)
-        overlaps = Overlaps.of(blockers.vertices, shapes, corners, may)
-        if len(overlaps.outer):
-            overlaps = overlaps.take(overlaps.near(corners, blockers.facing(corners, None, tolerance)))
+        facing = blockers.facing(corners, None, tolerance)
+        overlaps = Overlaps.of(blockers.vertices, shapes, corners, may, facing)
         used, outer = np.unique(overlaps.outer, return_inverse=True)
         return cls(blockers.take(used), shapes, plane, replace(overlaps, outer=outer.reshape(-1)))
 
 
 def light_past(
-    outlines: Outlines, standing: Standing, unseen_backs, seen: Shapes, points, normal, mirrors: Sequence[Reflecting]
-) -> np.ndarray:
-    """Illuminance by what is seen of polygons past blockers, as mirrors reflect it.
+    outlines: Outlines,
+    standing: Standing,
+    unseen_backs,
+    seen: Shapes,
+    points,
+    normal,
+    mirrors: Sequence[Reflecting],
+    rows,
+    received: Received,
+) -> None:
+    """Enter what is seen of polygons past blockers, as mirrors reflect it.
 
     Parameters
     ----------
@@ -417,39 +450,42 @@ def light_past(
     points : (r, 3) float
     normal : (3,) float
     mirrors : sequence of Reflecting
-
-    Returns
-    -------
-    (r,) float [lx]
+    rows : (r,) int
+        Receivers of what is seen at the points.
+    received : Received
     """
-    out = np.zeros(len(points))
+
+    def whole(some: Shapes) -> None:
+        received.add(rows[some.row], _reflected(some, mirrors), some.shape, normal)
+
     blockers, overlaps = standing.blockers, standing.overlaps
     if len(overlaps.outer):
         facing = blockers.facing(points, unseen_backs, outlines.tolerance)
         if len(overlaps.outer) * len(points) > _FEW:
             overlaps = overlaps.take(overlaps.near(frame(points, normal), facing))
     if not len(overlaps.outer):
-        return _add_whole(out, seen, normal, mirrors)
+        whole(seen)
+        return
     clear = np.array([outlines.materials[o].is_transparent for o in blockers.outline], bool)[overlaps.outer]
     hides, crosses = overlaps.seen(points, facing)
     crosses[clear] |= hides[clear]
     # what crosses follows shape after shape, for each receiver
     shapes = len(standing.shapes)
-    rows, pairs = np.nonzero(crosses.T)
+    row, pairs = np.nonzero(crosses.T)
     place = seen.row * shapes + seen.polygon
-    every = np.bincount(rows * shapes + overlaps.inner[pairs], minlength=len(points) * shapes)
+    every = np.bincount(row * shapes + overlaps.inner[pairs], minlength=len(points) * shapes)
     start = (np.cumsum(every) - every)[place]
     count = every[place]
     hidden = np.zeros((shapes, len(points)), bool)
     np.logical_or.at(hidden, overlaps.inner[~clear], hides[~clear])
     count[hidden[seen.polygon, seen.row]] = -1
-    _add_whole(out, seen.take(np.flatnonzero(count == 0)), normal, mirrors)
+    whole(seen.take(np.flatnonzero(count == 0)))
     by_pieces = count > 0
     if not any(mirror.varies for mirror in mirrors):
-        panes = np.bincount((rows * shapes + overlaps.inner[pairs])[clear[pairs]], minlength=len(every))
+        panes = np.bincount((row * shapes + overlaps.inner[pairs])[clear[pairs]], minlength=len(every))
         by_pieces &= panes[place] > 0
     if by_pieces.any():
-        out += _by_pieces(outlines, standing, seen.take(np.flatnonzero(by_pieces)), points, normal, mirrors)
+        whole(_in_pieces(outlines, standing, seen.take(np.flatnonzero(by_pieces)), points))
         count[by_pieces] = -1
     corners = blockers.vertices.transpose(2, 1, 0)
     for number in np.unique(count[count > 0]).tolist():
@@ -457,9 +493,7 @@ def light_past(
         some, row = seen.take(mine), seen.row[mine]
         blocker = overlaps.outer[pairs[start[mine] + np.arange(number)[:, None]]]
         screens = corners.take(blocker, axis=2).transpose(2, 0, 1, 3) - points[row].T[:, None]
-        factor = unhidden.form_factors(some.shape, screens, facing[blocker, row], normal, outlines.tolerance)
-        out += np.bincount(row, weights=_reflected(some, mirrors) * np.maximum(factor, 0.0), minlength=len(out))
-    return out
+        received.add(rows[row], _reflected(some, mirrors), some.shape, normal, screens, facing[blocker, row])
 
 
 def _reflected(seen: Shapes, mirrors: Sequence[Reflecting]) -> np.ndarray:
@@ -472,16 +506,8 @@ def _reflected(seen: Shapes, mirrors: Sequence[Reflecting]) -> np.ndarray:
     return weight
 
 
-def _add_whole(out: np.ndarray, seen: Shapes, normal, mirrors: Sequence[Reflecting]) -> np.ndarray:
-    """Add light of polygons that nothing hides."""
-    if len(seen.row):
-        factor = unhidden.whole_form_factors(seen.shape, normal)
-        out += np.bincount(seen.row, weights=_reflected(seen, mirrors) * np.maximum(factor, 0.0), minlength=len(out))
-    return out
-
-
-def _by_pieces(outlines: Outlines, standing: Standing, seen: Shapes, points, normal, mirrors) -> np.ndarray:
-    """(r,) float: as `light_past`, where pieces need weights of their own: past panes, or by uneven mirrors."""
+def _in_pieces(outlines: Outlines, standing: Standing, seen: Shapes, points) -> Shapes:
+    """What is seen past blockers, where pieces need weights of their own: past panes, or by uneven mirrors."""
     blockers = standing.blockers
     every = zip(blockers.vertices, blockers.outline.tolist(), blockers.plane.tolist(), strict=True)
     for polygon, outline, plane in every:
@@ -497,7 +523,7 @@ def _by_pieces(outlines: Outlines, standing: Standing, seen: Shapes, points, nor
             seen = joined([seen.take(np.flatnonzero(~overlaps)), *behind])
         if not len(seen.row):
             break
-    return _add_whole(np.zeros(len(points)), seen, normal, mirrors)
+    return seen
 
 
 def _past_blocker(outlines: Outlines, polygon, outline: int, seen: Shapes, planes, edges) -> list[Shapes]:

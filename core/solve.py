@@ -17,6 +17,7 @@ from .geometry import Geometry
 from .nodes import Nodes, settled
 from .parallel import chunks_of_receivers, run_parallel
 from .penumbra import trace_disc
+from .received import Received
 from .result import Result
 from .sources import Bright, Source, SourceView
 from .stages import Progress, Recorder
@@ -314,20 +315,41 @@ def _gather_bright(
         sheets = nodes.sheet[members]
         chunks = chunks_of_receivers(nodes.points[members], sheets, geometry.planes, _SOURCE_ROWS)
 
-        def work(chunk, checkpoint):
-            rows = members[chunk]
-            found[rows] = view(int(sheets[chunk[0]])).illuminance(nodes.points[rows], checkpoint)
+        def work(together: list[np.ndarray], checkpoint) -> None:
+            rows = members[np.concatenate(together)]
+            received = Received(len(rows), geometry.outlines.tolerance)
+            first = 0
+            for chunk in together:
+                some = slice(first, first + len(chunk))
+                view(int(sheets[chunk[0]])).add(
+                    nodes.points[rows[some]], np.arange(len(rows))[some], received, checkpoint
+                )
+                first += len(chunk)
+            found[rows] = received.illuminance()
 
         def report(part: float) -> None:
             progress(begun + share * part, "interreflection")
 
-        run_parallel(work, chunks, transfer.threads, report)
+        run_parallel(work, _handfuls(chunks, _SOURCE_ROWS), transfer.threads, report)
         done = begun + share
         # there is other, even light as well: where this is faint, its unevenness matters little
         return (found + found.mean())[:, None]
 
     nodes = settled(transfer.lattice, geometry.fracture, evaluate, times * transfer.times)
     return nodes.on_elements(found) + _of_rows(transfer, transfer.deep_rows, transfer.deep_factors, deep, exact)
+
+
+def _handfuls(chunks: list[np.ndarray], most: int) -> list[list[np.ndarray]]:
+    """Chunks by handfuls of at most so many receivers."""
+    handfuls: list[list[np.ndarray]] = []
+    room = 0
+    for chunk in chunks:
+        if len(chunk) > room:
+            handfuls.append([])
+            room = most
+        handfuls[-1].append(chunk)
+        room -= len(chunk)
+    return handfuls
 
 
 def _of_rows(transfer: Transfer, rows: np.ndarray, factors: np.ndarray, light: np.ndarray, exact: bool) -> np.ndarray:

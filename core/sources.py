@@ -30,6 +30,7 @@ from .blockers import (
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
+from .received import Received
 from .tracing import ChainLimits
 from .unhidden import whole_form_factors
 
@@ -113,7 +114,10 @@ def gather_sources(
     if not sources or not len(points):
         return np.zeros(len(points))
     points = np.asarray(points, float)
-    return Bright(outlines, sources, limits, faint).seen_from(points, normal).illuminance(points, checkpoint)
+    received = Received(len(points), outlines.tolerance)
+    view = Bright(outlines, sources, limits, faint).seen_from(points, normal)
+    view.add(points, np.arange(len(points)), received, checkpoint)
+    return received.illuminance()
 
 
 def even_illuminance(outlines: Outlines, sources: list[Source]) -> float:
@@ -376,6 +380,8 @@ class _Leg:
     Attributes
     ----------
     points : (r, 3) float
+    rows : (r,) int
+        Numbers of the receivers.
     window : (r, v, 3) float or None
         What each receiver sees of the last mirror through all before it, relative to the receiver.
     opening : (r,) float or None
@@ -383,6 +389,7 @@ class _Leg:
     """
 
     points: np.ndarray
+    rows: np.ndarray
     window: np.ndarray | None = None
     opening: np.ndarray | None = None
 
@@ -435,29 +442,27 @@ class SourceView:
     bright: Bright
     straight: _Path
 
-    def illuminance(self, points, checkpoint: Callable[[], None] = lambda: None) -> np.ndarray:
-        """(r,) float: light at some of the receivers [lx]."""
+    def add(self, points, rows, received: Received, checkpoint: Callable[[], None] = lambda: None) -> None:
+        """Enter what some of the receivers ``(r, 3)`` see, as that of ``rows`` (r,)."""
         unseen = self.bright.outlines.unseen_backs(points, self.straight.horizon.normal)
-        return self._gathered(self.straight, _Leg(points), unseen, checkpoint)
+        self._add_all(self.straight, _Leg(points, rows), unseen, received, checkpoint)
 
-    def _gathered(self, path: _Path, leg: _Leg, unseen, checkpoint) -> np.ndarray:
-        """(r,) float: light that comes past the path's blockers, and by any further mirror [lx]."""
-        total = np.zeros(len(leg.points))
+    def _add_all(self, path: _Path, leg: _Leg, unseen, received: Received, checkpoint) -> None:
+        """Enter light that comes past the path's blockers, and by any further mirror."""
         for number in range(len(self.bright.groups)):
             checkpoint()
-            self._add_sources(path, leg, number, unseen, total)
+            self._add_sources(path, leg, number, unseen, received)
         if path.depth < self.bright.limits.exact_mirrors:
             for mirror in self.bright.mirrors:
-                self._add_mirrored(path, leg, mirror, unseen, checkpoint, total)
-        return total
+                self._add_mirrored(path, leg, mirror, unseen, received, checkpoint)
 
-    def _add_sources(self, path: _Path, leg: _Leg, number: int, unseen, total: np.ndarray) -> None:
-        least, group = self.bright.least, self.bright.groups[number]
+    def _add_sources(self, path: _Path, leg: _Leg, number: int, unseen, received: Received) -> None:
+        least, group, outlines = self.bright.least, self.bright.groups[number], self.bright.outlines
         some, standing = path.sources(number)
         if not len(some):
             return
         height = group.heights(leg.points)
-        bright = height[some] > self.bright.outlines.tolerance
+        bright = height[some] > outlines.tolerance
         if leg.opening is not None:
             bright &= path.throughput * group.most(leg.points, height)[some] > least
             bright &= path.throughput * leg.opening * group.exitance[some, None] > least
@@ -465,11 +470,11 @@ class SourceView:
         if not len(row):
             return
         seen = leg.seen(row, which, standing.shapes, group.exitance[some[which]])
-        if not len(seen.row):
-            return
-        total += light_past(self.bright.outlines, standing, unseen, seen, leg.points, path.horizon.normal, path.mirrors)
+        if len(seen.row):
+            normal = path.horizon.normal
+            light_past(outlines, standing, unseen, seen, leg.points, normal, path.mirrors, leg.rows, received)
 
-    def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, checkpoint, total: np.ndarray) -> None:
+    def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, received: Received, checkpoint) -> None:
         outlines, tolerance = self.bright.outlines, self.bright.outlines.tolerance
         material = outlines.materials[mirror]
         throughput = path.throughput * self.bright.mirrors[mirror]
@@ -493,7 +498,10 @@ class SourceView:
             seen = seen.take(bright)
             window = seen.shape.transpose(2, 1, 0)
             further = _Leg(
-                reflect_points(leg.points[seen.row], normal, offset), reflect(window, normal), opening[bright]
+                reflect_points(leg.points[seen.row], normal, offset),
+                leg.rows[seen.row],
+                reflect(window, normal),
+                opening[bright],
             )
             way = path.mirrored(mirror, ahead, aperture, throughput)
-            total[seen.row] += self._gathered(way, further, unseen, checkpoint)
+            self._add_all(way, further, unseen, received, checkpoint)

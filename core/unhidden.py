@@ -38,7 +38,7 @@ def form_factors(
         Convex polygons relative to the points, padded likewise, between point and polygon wherever they overlap.
     facing : (k, n) float
         Positive where a screen's right-hand normal looks at the point, negative where away.
-    normal : (3,) float, unit
+    normal : (3,) or (3, n) float, unit
         Of the points.
     tolerance : float
         Distance at which corners may be meant to lie on an edge [m].
@@ -50,9 +50,11 @@ def form_factors(
     count, corners, edges = shapes.shape[2], shapes.shape[1], shapes.shape[1] + screens.shape[0] * screens.shape[2]
     step = max(16, _VALUES // (edges * max(edges - corners, 1)))
     found = np.empty(count)
+    normal = np.broadcast_to(normal.reshape(3, -1), (3, count))
     for first in range(0, count, step):
         some = slice(first, first + step)
-        found[some] = _along_contours(shapes[..., some], screens[..., some], facing[:, some], normal, tolerance)
+        parts = shapes[..., some], screens[..., some], facing[:, some], normal[:, some]
+        found[some] = _along_contours(*parts, tolerance)
     return found
 
 
