@@ -30,7 +30,7 @@ class Received:
     def __init__(self, count: int, tolerance: float) -> None:
         self._total = np.zeros(count)
         self._tolerance = tolerance
-        self._waiting: dict[int, list[tuple[np.ndarray, ...]]] = {}
+        self._waiting: dict[tuple[int, int], list[tuple[np.ndarray, ...]]] = {}
         self._held = 0
 
     def add(self, row, weight, shapes, normal, screens=None, facing=None) -> None:
@@ -55,7 +55,7 @@ class Received:
         number = 0 if screens is None else len(screens)
         normals = np.broadcast_to(normal[:, None], (3, len(row)))
         parts = (row, weight, normals, shapes) if screens is None else (row, weight, normals, shapes, facing, screens)
-        self._waiting.setdefault(number, []).append(parts)
+        self._waiting.setdefault((number, shapes.shape[1]), []).append(parts)
         self._held += len(row) * (1 + number)
         if self._held > _MOST:
             self._work_out()
@@ -66,12 +66,11 @@ class Received:
         return self._total
 
     def _work_out(self) -> None:
-        for number in sorted(self._waiting):
-            parts = self._waiting.pop(number)
-            count = sum(len(part[0]) for part in parts)
-            more = [other for other in self._waiting if other > number]
-            if number and more and count < _FEW:
-                self._waiting[min(more)] += [_with_screens(part, min(more)) for part in parts]
+        for number, corners in sorted(self._waiting):
+            parts = self._waiting.pop((number, corners))
+            others = [key for key in self._waiting if key[0] >= number > 0 and key[1] >= corners]
+            if others and sum(len(part[0]) for part in parts) < _FEW:
+                self._waiting[min(others)] += [_with_screens(part, min(others)[0]) for part in parts]
             elif number:
                 self._enter(*(_joined(some) for some in zip(*parts, strict=True)))
             else:

@@ -257,7 +257,7 @@ def _groups(sources: list[Source], outlines: Outlines) -> list[_Group]:
             planes.append((normal, offset, [source]))
     together: list[list[tuple[np.ndarray, float, list[Source]]]] = []
     room = 0
-    for plane in planes:
+    for plane in sorted(planes, key=lambda plane: max(len(source.polygon) for source in plane[2])):
         if room <= 0:
             together.append([])
             room = _TOGETHER
