@@ -6,9 +6,9 @@ Data goes one way: `participants`, `materials`, `export` read Blender; `study` r
 
 from __future__ import annotations
 
-from . import commands, console, handlers, legend, operators, overlays, panels, properties, translations
+from . import commands, compass, console, handlers, legend, operators, overlays, panels, properties, translations
 
-_ROOMS = (console, translations, properties, operators, panels, legend, overlays, handlers, commands)
+_ROOMS = (console, translations, properties, operators, panels, legend, compass, overlays, handlers, commands)
 
 
 def register() -> None:

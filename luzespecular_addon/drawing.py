@@ -27,6 +27,11 @@ def size() -> float:
     return bpy.context.preferences.system.ui_scale or 1.0
 
 
+def region(kind: str) -> bpy.types.Region | None:
+    """Return a region of the area that is drawn, such as its sidebar."""
+    return next((one for one in bpy.context.area.regions if one.type == kind), None)
+
+
 def begin_texts() -> None:
     """Choose the size of texts."""
     blf.size(FONT, TEXT * size())

@@ -70,7 +70,7 @@ def _draw() -> None:
     beside = width + padding + drawing.width_of([missing, *(text for _, text in ticks)])
     panel_width = max(drawing.width_of(lines), beside) + 2 * padding
     panel_height = height + (len(lines) + 2) * line + 2 * padding
-    left, bottom = round(_left_edge() + margin), round(margin)
+    left, bottom = round(_left_edge() + margin), round(_lower_edge() + margin)
     gpu.state.blend_set("ALPHA")
     drawing.rectangle(left, bottom, panel_width, panel_height, drawing.PANEL_COLOUR)
     bar_left, bar_bottom = round(left + padding), round(bottom + padding + 1.5 * line)
@@ -88,9 +88,14 @@ def _draw() -> None:
 
 def _left_edge() -> float:
     """Return where the viewport is free, beside the toolbar where that overlaps the view."""
-    area = bpy.context.area
-    tools = next((region for region in area.regions if region.type == "TOOLS"), None)
-    return tools.width if tools and bpy.context.preferences.system.use_region_overlap else 0
+    tools = drawing.region("TOOLS")
+    return tools.width if tools is not None and bpy.context.preferences.system.use_region_overlap else 0
+
+
+def _lower_edge() -> float:
+    """Return where the viewport is free, above the panel of the last operation where that is shown."""
+    panel = drawing.region("HUD")
+    return panel.y + panel.height - bpy.context.region.y if panel is not None and panel.width > 1 else 0
 
 
 def _bar(scale_name: str, left: float, bottom: float, width: float, height: float) -> None:

@@ -60,10 +60,14 @@ class LUZESPECULAR_OT_solve(InBackground, bpy.types.Operator):
 
     def must_wait(self, context) -> bool:
         """Results cannot be written in Edit Mode; they wait until the user leaves it."""
-        waits = context.mode.startswith("EDIT") and not context.window_manager.luzespecular.cancel
-        if waits and self._task.error is None:
+        state = context.window_manager.luzespecular
+        waits = context.mode.startswith("EDIT") and not state.cancel and self._task.error is None
+        if waits and state.seconds_left >= 0.0:
+            state.seconds_left, state.stage = -1.0, iface_("Leave Edit Mode first (Tab)")
+            redraw_sidebars(context)
+        if waits:
             context.workspace.status_text_set(iface_("LuzEspecular: solved; leave Edit Mode (Tab) to see the results"))
-        return waits and self._task.error is None
+        return waits
 
     def show_progress(self, context, job: Job) -> None:
         """Tell stage, share and time left."""

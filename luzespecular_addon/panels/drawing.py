@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import bpy
 
+from ..compass import TAB
 from ..translations import CONTEXT
 
 LEVEL_ICONS = {"ERROR": "CANCEL", "WARNING": "ERROR", "INFO": "INFO"}
@@ -16,7 +17,7 @@ class Sidebar:
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
-    bl_category = "LuzEspecular"
+    bl_category = TAB
     bl_translation_context = CONTEXT
 
 

@@ -55,6 +55,8 @@ class LUZESPECULAR_PT_site(Sidebar, bpy.types.Panel):
         _draw_sun(layout.box().column(align=True), site, context.region.width)
         row = layout.row()
         row.operator("luzespecular.set_now", icon="TIME")
+        row.use_property_decorate = False
+        row.prop(site, "show_compass", text="", icon="ORIENTATION_GLOBAL")
 
 
 class LUZESPECULAR_PT_sun_light(Sidebar, bpy.types.Panel):

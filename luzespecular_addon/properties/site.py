@@ -5,7 +5,7 @@ from bpy.props import PointerProperty
 
 from .. import following, sun_light
 from ..translations import CONTEXT
-from .kinds import EnumProperty, FloatProperty, IntProperty
+from .kinds import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 
 def _changed(settings: "LuzSiteSettings", _context: bpy.types.Context) -> None:
@@ -86,6 +86,11 @@ class LuzSiteSettings(bpy.types.PropertyGroup):
         default=0.0,
         precision=2,
         update=_changed,
+    )
+    show_compass: BoolProperty(
+        name="Compass",
+        description="Draw north and the Sun in the 3D viewport, with results or while this tab is open",
+        default=True,
     )
     sun_link: EnumProperty(
         name="Sun Light",

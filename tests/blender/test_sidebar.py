@@ -26,6 +26,15 @@ def towards(light):
     return light.matrix_world.to_3x3().col[2]
 
 
+def test_the_compass_looks_where_sun_lights_shine_from(addon, bpy):
+    light = sun_light(bpy)
+    for azimuth, altitude in ((0.0, 0.0), (90.0, 10.0), (200.0, 65.0), (330.0, -20.0)):
+        addon.sun_light.point(light, altitude, azimuth)
+        bpy.context.view_layer.update()
+        assert addon.compass.towards(azimuth, altitude) == pytest.approx(tuple(towards(light)), abs=1e-6)
+    assert addon.compass.towards(90.0) == pytest.approx((1.0, 0.0, 0.0))  # east of +Y, seen from above
+
+
 def test_places_have_their_clocks_near_the_sun(addon):
     for place in addon.places.PLACES:
         assert -90 < place.latitude < 90, place

@@ -40,6 +40,10 @@ TEXTS = {
     "Local clock time of the time zone": "Hora legal do fuso horário",
     "Hour": "Hora",
     "Hour of the day, with decimals: 9.5 is half past nine": "Hora do dia, com decimais: 9,5 são nove e meia",
+    "Compass": "Bússola",
+    "Draw north and the Sun in the 3D viewport, with results or while this tab is open": (
+        "Desenhar o norte e o Sol na vista 3D, com resultados ou enquanto esta aba está aberta"
+    ),
     "North Offset": "Desvio norte",
     "Angle in degrees from the +Y axis to true north, clockwise seen from above": (
         "Ângulo em graus do eixo +Y ao norte verdadeiro, no sentido horário visto de cima"
