@@ -28,6 +28,7 @@ _OWN = 0.98
 _CLOSED_AREA = 0.02
 _CHAIN_RAYS, _CUTOFF, _DEEPEST = 400, 1e-3, 200
 _DEEP = 30.0
+_MOST_PANES, _STILL_SEEN, _OFTEN = 12, 0.01, 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +95,7 @@ def findings(surfaces: list[Surface], planes: Planes, rays: RayScene, touching: 
         *_wrong_sides(surfaces, planes, seen, spared),
         *_closed(surfaces, planes, seen, area, clear),
         *_chains(surfaces, planes, rays, points, towards.reshape(-1, 3)),
+        *_panes(surfaces, planes, rays, points, towards.reshape(-1, 3)),
     ]
 
 
@@ -315,5 +317,32 @@ def _chains(surfaces, planes: Planes, rays: RayScene, points: np.ndarray, toward
             f"Between {_named(surfaces, planes, often)} a look is mirrored {mean:.0f} times on average and up to "
             f"{deepest} times, so that looking takes some {mean + 1:.0f} times as long as without mirrors",
             "lower their reflectances, turn them a little, or raise specular_cutoff",
+        )
+    ]
+
+
+def _panes(surfaces, planes: Planes, rays: RayScene, points: np.ndarray, towards: np.ndarray) -> list[Finding]:
+    """Panes one behind the other, more than are looked through but by single rays."""
+    clear = np.array([s.material.regular_transmittance for s in surfaces])[planes.sheet_surface]
+    if np.count_nonzero(clear) <= _MOST_PANES:
+        return []
+    kept = np.linspace(0, len(points) - 1, min(_CHAIN_RAYS, len(points))).astype(int)
+    place, way, weight = points[kept], towards[kept], np.ones(len(kept))
+    for _ in range(_MOST_PANES + 1):
+        outline, distance = rays.nearest(place, way)
+        sheet = planes.outline_sheet[outline]
+        on = (outline >= 0) & (weight * clear[sheet] >= _STILL_SEEN)
+        place = place[on] + distance[on, None] * way[on]
+        way, weight, sheet = way[on], (weight * clear[sheet])[on], sheet[on]
+    if len(sheet) <= _OFTEN * len(kept):
+        return []
+    last = np.unique(sheet)
+    return [
+        warning(
+            "many panes",
+            _all_faces(planes, last),
+            f"{_named(surfaces, planes, last)}: seen through more than {_MOST_PANES} panes, one behind the other. What "
+            "is farther is found by one ray for each parcel, and several percent may be missing or too much",
+            "put one pane of the product of their transmittances for some of them, or raise bands",
         )
     ]

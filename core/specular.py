@@ -28,6 +28,10 @@ _FEW_BEAMS = 5_000
 _LOOKED_INTO = 4
 """So are all after more mirrors or panes than this, which show little light each."""
 
+_PANES_LOOKED_THROUGH = 12
+_FAINT = 0.01
+"""Through panes alone, which don't multiply what is seen, as long as some receiver sees more than this by them."""
+
 _WINDOWS = 2
 """Earlier mirrors whose edges bound what beams show in part."""
 
@@ -241,15 +245,14 @@ class GroupSight:
                         window = None if window is None else reflect(window, normal).astype(np.float32)
                     mirrors = s.mirrors + (kind == "mirror")
                     partial = self._partial(onward, direction, points, int(o), window)
-                    few = np.count_nonzero(onward.weights) < _FEW_BEAMS
-                    if chain and (few or len(chain) >= _LOOKED_INTO):
+                    step = (int(o), kind, front)
+                    if chain and _one_by_one(onward.weights, (*chain, step)):
                         left.append(
                             Rays.beyond(
                                 rows, points, beams, onward.weights, partial, product, mirrors, past, len(chain) + 1
                             )
                         )
                         continue
-                    step = (int(o), kind, front)
                     following.append(
                         (
                             rows,
@@ -279,3 +282,10 @@ class GroupSight:
             # of the mirrors before, the last few: what is seen through many lies well inside the first
             planes = np.concatenate([window[:, -_WINDOWS * planes.shape[1] :], planes], axis=1)
         return Partial(onward.row, onward.beam, direction, planes)
+
+
+def _one_by_one(weights: np.ndarray, chain: tuple) -> bool:
+    """Whether beams of weights ``(r, k)`` are followed as single rays after a chain of mirrors and panes."""
+    if len(chain) <= _PANES_LOOKED_THROUGH and all(kind == "through" for _, kind, _ in chain):
+        return float(weights.sum(axis=1).max()) < _FAINT
+    return len(chain) > _LOOKED_INTO or np.count_nonzero(weights) < _FEW_BEAMS

@@ -201,6 +201,14 @@ FAULTS = {
         "deep mirror chains",
         {"west": [0], "east": [0]},
     ),
+    "fifteen panes": (
+        lambda: room(
+            {f"pane {k}": rectangle((0, 3), (0, 3), 0.5 + 0.1 * k) for k in range(15)},
+            **{f"pane {k}": luz.Material(regular_transmittance=0.9) for k in range(15)},
+        ),
+        "many panes",
+        {"pane 12": [0]},
+    ),
     "a closed box that absorbs nothing": (
         lambda: box(luz.Material(diffuse_reflectance=1.0, exitance=1.0)),
         "endless reflection",

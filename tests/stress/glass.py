@@ -146,6 +146,21 @@ def in_a_shaft(count: int, share: float) -> Outcome:
     )
 
 
+def at_points(count: int) -> Outcome:
+    """Single points below panes in a shaft get what they would without, times the share of each."""
+
+    def lux(panes: int) -> np.ndarray:
+        scene = luz.Scene()
+        for name, polygon in box_polygons((1, 1, 2)).items():
+            if name != "ceiling":
+                scene.add(name, polygon, BLACK)
+        for k in range(panes):
+            scene.add(f"pane {k}", box_polygons((1, 1, 0.2 + 1.7 * k / panes))["ceiling"], plain(0.9))
+        return solved(scene, EVEN, bands=24, elements=60).at([[0.5, 0.5, 0], [0.3, 0.7, 0]], [[0, 0, 1]] * 2)
+
+    return near(lux(count), lux(0) * 0.9**count, 5e-3)
+
+
 def frosted() -> Outcome:
     """A sheet that reflects diffusely and lets light through: the floor below a third of the sky's."""
     both = luz.Material(diffuse_reflectance=0.5, regular_transmittance=0.3)
@@ -210,8 +225,10 @@ def situations() -> Iterator[Situation]:
     yield row("a lamp behind two panes", lamp_behind_glass)
     yield row("turned, under the sky", lambda: turned(EVEN))
     yield row("turned, in the Sun", lambda: turned(HIGH))
-    for count, share in ((3, 0.85), (3, 0.05)):
+    for count, share in ((3, 0.85), (5, 0.85), (10, 0.9), (3, 0.05)):
         yield row(f"{count} panes of {share:g} in a shaft", lambda n=count, s=share: in_a_shaft(n, s))
+    for count in (2, 6):
+        yield row(f"points below {count} panes in a shaft", lambda n=count: at_points(n))
     yield row("a sheet that scatters and transmits", frosted)
     yield row("a sheet that mirrors and transmits", tinted_mirror)
     yield row("a window of twelve panes", window_of_panes)

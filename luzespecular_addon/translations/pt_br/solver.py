@@ -27,6 +27,7 @@ KINDS = {
     "gap": "fresta",
     "inside out": "do avesso",
     "inverted normals": "normais invertidas",
+    "many panes": "muitos vidros",
     "no area": "sem área",
     "no material": "sem valores de material",
     "no opening": "sem abertura",
@@ -231,6 +232,14 @@ SOLVER = {
     ),
     "lower their reflectances, turn them a little, or raise Specular Cut-off (Accuracy: Expert)": (
         "reduza suas refletâncias, gire-os um pouco, ou aumente Corte especular (Exatidão: Especialista)"
+    ),
+    "{surfaces}: seen through more than {most} panes, one behind the other. What is farther is found by one ray for "
+    "each parcel, and several percent may be missing or too much": (
+        "{surfaces}: vistas através de mais de {most} vidros, um atrás do outro. O que está além é encontrado por um "
+        "raio por parcela, e podem faltar ou sobrar alguns por cento"
+    ),
+    "put one pane of the product of their transmittances for some of them, or raise bands": (
+        "ponha no lugar de alguns um só vidro com o produto de suas transmitâncias, ou aumente as faixas"
     ),
     "Between {surfaces} light is mirrored without end: they enclose a space and absorb nothing": (
         "Entre {surfaces} a luz é espelhada sem fim: fecham um espaço e nada absorvem"
