@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 
@@ -50,12 +51,13 @@ def chunks_of_receivers(points, sheet, planes: Planes, most: int) -> list[np.nda
 
 
 def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[float], None]) -> None:
-    """Run ``work(task, checkpoint)`` for each task on several threads.
+    """Run ``work(task, checkpoint)`` for each task on several threads; a single task, or on one thread, in this one.
 
     ``report`` is called with the share of tasks done, and often enough for a user to stop a long one. Where it raises,
     tasks under way stop at their next checkpoint and the exception goes on to the caller.
     """
-    if not tasks:
+    if threads == 1 or len(tasks) <= 1:
+        _run_here(work, tasks, report)
         return
     stop, lock, left = threading.Event(), threading.Lock(), iter(tasks)
     done = 0
@@ -88,3 +90,20 @@ def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[fl
         except BaseException:
             stop.set()
             raise
+
+
+def _run_here(work: Callable, tasks: list, report: Callable[[float], None]) -> None:
+    done, told = 0, time.monotonic()
+
+    def checkpoint() -> None:
+        nonlocal told
+        if time.monotonic() - told > _POLL:
+            report(done / len(tasks))
+            told = time.monotonic()
+
+    for task in tasks:
+        checkpoint()
+        work(task, checkpoint)
+        done += 1
+    if tasks:
+        report(1.0)
