@@ -1,9 +1,4 @@
-"""Blockers: convex polygons between receivers and bright ones, and what light comes past them.
-
-Which of them matter is told first, for all receivers and then one by one: a blocker hides nothing of what lies outside
-of one of its edges. On which side of the plane through an edge and the receiver a corner lies, the sign of a volume
-tells, which is an affine function of the receiver's place: for all of them one matrix product.
-"""
+"""Blockers: convex polygons between receivers and bright ones, and what light comes past them."""
 
 from __future__ import annotations
 
@@ -15,14 +10,10 @@ import numpy as np
 
 from . import polygons
 from .outlines import Outlines
+from .pieces import Shapes, edge_cones, joined, past_blocker
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
-
-_SLIVER = 1e-9
-"""Over the extent of all at hand: what is narrower makes no difference, as where two only touch."""
-
-_VOLUMES = 1_000_000
-"""That are held at once."""
+from .silhouettes import Overlaps
 
 _FEW = 4_000
 """Pairs of a blocker and a shape, times receivers: fewer are told one by one at once."""
@@ -98,169 +89,6 @@ class Blockers:
         return height
 
 
-@dataclass(frozen=True, eq=False)
-class Overlaps:
-    """Pairs of an outer and an inner convex polygon, and how they may overlap as points see them.
-
-    Attributes
-    ----------
-    outer, inner : (q,) int
-        Numbers of the polygons; sorted by the inner one's.
-    forms : (q, w, v, 4) float
-        Of a point's place: height of inner corners within outer edges, over the extent of all, as seen from before the
-        outer polygon.
-    back : (q, v, w, 4) float
-        Of outer corners within inner edges, as seen from before the inner polygon.
-    free : (q, w) bool
-    loose : (q, v) bool
-        Which are no edges, of outer and of inner polygons.
-    centre : (3,) float
-        That places are relative to.
-    """
-
-    outer: np.ndarray
-    inner: np.ndarray
-    forms: np.ndarray
-    back: np.ndarray
-    free: np.ndarray
-    loose: np.ndarray
-    centre: np.ndarray
-
-    @classmethod
-    def of(cls, outer, inner, corners, may, facing) -> Overlaps:
-        """Those that may overlap as seen from anywhere between corners.
-
-        Parameters
-        ----------
-        outer, inner : (k, w, 3) and (s, v, 3) float
-        corners : (c, 3) float
-        may : (s, k) bool
-            Pairs that count.
-        facing : (k, c) float
-            Positive where a corner is before an outer polygon, negative behind; 0 in its plane.
-        """
-        centre = corners.mean(axis=0)
-        outer, inner, eye = outer - centre, inner - centre, corners - centre
-        extent = max(float(np.abs(part).max(initial=1e-300)) for part in (outer, inner, eye))
-        low = np.minimum(inner.min(axis=1), eye.min(axis=0)) - _SLIVER * extent
-        high = np.maximum(inner.max(axis=1), eye.max(axis=0)) + _SLIVER * extent
-        apart = (outer.min(axis=1) > high[:, None]) | (outer.max(axis=1) < low[:, None])
-        number, which = np.nonzero(~apart.any(axis=2) & may)
-        forms, sides = _forms(outer[which], inner[number], extent)
-        free = sides <= 1e-12 * extent
-        near = np.flatnonzero(_within(forms, free, corners - centre, facing[which]))
-        number, which = number[near], which[near]
-        back, along = _forms(inner[number], outer[which], extent)
-        found = cls(which, number, forms[near], back, free[near], along <= 1e-12 * extent, centre)
-        return found.take(np.flatnonzero(found._reached(corners)))
-
-    def take(self, index) -> Overlaps:
-        """Some of the pairs."""
-        return Overlaps(
-            self.outer[index],
-            self.inner[index],
-            self.forms[index],
-            self.back[index],
-            self.free[index],
-            self.loose[index],
-            self.centre,
-        )
-
-    def near(self, corners, facing) -> np.ndarray:
-        """(q,) bool: pairs that may overlap as seen from anywhere between ``corners`` (c, 3).
-
-        ``facing`` (k, any) tells whether points are before or behind the outer polygons, or in their planes.
-        """
-        return _within(self.forms, self.free, corners - self.centre, facing[self.outer]) & self._reached(corners)
-
-    def _reached(self, corners) -> np.ndarray:
-        """(q,) bool: outer polygons that reach within all inner edges."""
-        reach = (self.back.reshape(-1, 4) @ _places(corners - self.centre)).reshape(
-            *self.loose.shape, self.back.shape[2] * len(corners)
-        )
-        return ((reach.max(axis=2) > _SLIVER) | self.loose).all(axis=1)
-
-    def seen(self, points, facing) -> tuple[np.ndarray, np.ndarray]:
-        """How each pair overlaps.
-
-        Parameters
-        ----------
-        points : (r, 3) float
-            Before the inner polygons.
-        facing : (k, r) float
-            Positive where a point is before an outer polygon, negative behind; 0 in its plane.
-
-        Returns
-        -------
-        within : (q, r) bool
-            The inner polygon lies wholly within the outer one.
-        crossing : (q, r) bool
-            A part of it does.
-        """
-        eye = _places(points - self.centre)
-        within, crossing = np.zeros((2, len(self.outer), len(points)), bool)
-        edges, corners = self.forms.shape[1:3]
-        step = max(1, _VOLUMES // max(1, edges * corners * len(points)))
-        for first in range(0, len(self.outer), step):
-            some = slice(first, first + step)
-            heights = (self.forms[some].reshape(-1, 4) @ eye).reshape(-1, edges, corners, len(points))
-            low, high, free = heights.min(axis=2), heights.max(axis=2), self.free[some, :, None]
-            here = facing[self.outer[some]]
-            before, behind = here > 0, here < 0
-            if before.any():
-                crossing[some] = before & ((high > _SLIVER) | free).all(axis=1)
-                within[some] = before & ((low > -_SLIVER) | free).all(axis=1)
-            if behind.any():
-                crossing[some] |= behind & ((low < -_SLIVER) | free).all(axis=1)
-                within[some] |= behind & ((high < _SLIVER) | free).all(axis=1)
-            left = first + np.flatnonzero(crossing[some].any(axis=1))
-            reach = (self.back[left].reshape(-1, 4) @ eye).reshape(-1, corners, edges, len(points)).max(axis=2)
-            crossing[left] &= ((reach > _SLIVER) | self.loose[left, :, None]).all(axis=1)
-        within &= crossing
-        crossing &= ~within
-        return within, crossing
-
-
-def _places(points) -> np.ndarray:
-    return np.concatenate([points.T, np.ones((1, len(points)))])
-
-
-def _within(forms, free, corners, facing) -> np.ndarray:
-    """(q,) bool: inner polygons that reach within all outer edges as seen from somewhere between corners."""
-    before, behind = (facing > 0).any(axis=1), (facing < 0).any(axis=1)
-    heights = (forms.reshape(-1, 4) @ _places(corners)).reshape(*free.shape, forms.shape[2] * len(corners))
-    may = ((heights.max(axis=2) > _SLIVER) | free).all(axis=1) & before
-    may |= ((heights.min(axis=2) < -_SLIVER) | free).all(axis=1) & behind
-    return may
-
-
-def _forms(edged, others, extent: float) -> tuple[np.ndarray, np.ndarray]:
-    """Affine forms of a point's place, positive where others' corners lie within an edge; and edges' lengths (q, w).
-
-    Parameters
-    ----------
-    edged : (q, w, 3) float
-    others : (q, v, 3) float
-    extent : float
-
-    Returns
-    -------
-    forms : (q, w, v, 4) float
-        Nought where an edge and a corner lie on one line.
-    sides : (q, w) float
-    """
-    edge = np.roll(edged, -1, axis=1) - edged
-    normal = polygons.cross(edge[:, :, None], others[:, None] - edged[:, :, None])
-    length = np.sqrt(np.einsum("...c,...c->...", normal, normal))
-    side = np.sqrt(np.einsum("...c,...c->...", edge, edge))
-    plane = length > 1e-12 * extent * side[:, :, None]
-    scale = np.where(plane, 1.0 / np.where(plane, length * extent, 1.0), 0.0)
-    forms = np.empty((*length.shape, 4))
-    np.multiply(normal, scale[..., None], out=forms[..., :3])
-    forms[..., 3] = -np.einsum("qwvc,qwc->qwv", forms[..., :3], edged)
-    return forms, side
-
-
 class Reflecting(Protocol):
     """A mirror on the way."""
 
@@ -270,30 +98,6 @@ class Reflecting(Protocol):
 
     def share(self, directions) -> np.ndarray:
         """(n,) float: of light along directions ``(n, 3)``."""
-
-
-@dataclass(frozen=True, eq=False)
-class Shapes:
-    """What receivers see of bright polygons.
-
-    Attributes
-    ----------
-    row, polygon : (n,) int
-        Receiver of each, and which polygon it is a part of.
-    shape : (3, v, n) float, padded
-        Relative to the receiver.
-    weight : (n,) float
-        Exitance times what panes let through [lm/m²].
-    """
-
-    row: np.ndarray
-    polygon: np.ndarray
-    shape: np.ndarray
-    weight: np.ndarray
-
-    def take(self, index) -> Shapes:
-        """Some of them ``(k,)`` int."""
-        return Shapes(self.row[index], self.polygon[index], self.shape.take(index, axis=2), self.weight[index])
 
 
 def between(outlines: Outlines, corners, shapes, half_spaces: list[HalfSpace], skip: int = -1) -> Blockers:
@@ -519,68 +323,8 @@ def _in_pieces(outlines: Outlines, standing: Standing, seen: Shapes, points) -> 
         if plane >= 0:
             overlaps &= standing.plane[seen.polygon] == plane
         if overlaps.any():
-            behind = _past_blocker(outlines, polygon, outline, seen.take(np.flatnonzero(overlaps)), planes, edges)
+            behind = past_blocker(outlines, polygon, outline, seen.take(np.flatnonzero(overlaps)), planes, edges)
             seen = joined([seen.take(np.flatnonzero(~overlaps)), *behind])
         if not len(seen.row):
             break
     return seen
-
-
-def _past_blocker(outlines: Outlines, polygon, outline: int, seen: Shapes, planes, edges) -> list[Shapes]:
-    """Polygons less a blocker's cone; behind a pane they are kept, dimmed."""
-    kept = []
-    material = outlines.materials[outline]
-    row, shape, weight, which = seen.row, seen.shape.transpose(2, 1, 0), seen.weight, seen.polygon
-    for e in range(planes.shape[1]):
-        if not len(row):
-            break
-        wall, edge = planes[row, e], edges[row, e]
-        outside = polygons.clip(shape, -wall)
-        some = np.flatnonzero(edge & has_area(outside))
-        kept.append(Shapes(row[some], which[some], outside[some].transpose(2, 1, 0), weight[some]))
-        inside = polygons.clip(shape, wall)
-        inside = inside if edge.all() else _choose(edge, inside, shape)
-        some = np.flatnonzero(has_area(inside))
-        row, which, shape, weight = row[some], which[some], inside[some], weight[some]
-    if material.is_transparent:
-        plane = polygons.newell_normal(polygon)
-        centre = shape.mean(axis=1)
-        length = np.linalg.norm(centre, axis=1) * np.linalg.norm(plane)
-        through = material.transmittance_at((centre @ plane) / np.maximum(length, 1e-300))
-        kept.append(Shapes(row, which, shape.transpose(2, 1, 0), weight * through))
-    return kept
-
-
-def joined(parts: list[Shapes]) -> Shapes:
-    """All polygons in one."""
-    parts = [p for p in parts if len(p.row)] or parts[:1]
-    return Shapes(
-        np.concatenate([p.row for p in parts]),
-        np.concatenate([p.polygon for p in parts]),
-        np.ascontiguousarray(polygons.joined([p.shape.transpose(2, 1, 0) for p in parts]).transpose(2, 1, 0)),
-        np.concatenate([p.weight for p in parts]),
-    )
-
-
-def edge_cones(windows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Planes through the eye and a window's edges, positive inside; which are edges; from which side it is seen."""
-    planes = polygons.cross(windows, np.roll(windows, -1, axis=1))
-    facing = np.einsum("rc,rc->r", polygons.newell_normal(windows), windows[:, 0])
-    planes *= np.sign(facing)[:, None, None]
-    length = np.linalg.norm(planes, axis=2)
-    edges = length > 1e-14 * np.linalg.norm(windows, axis=2).max(axis=1)[:, None] ** 2
-    planes = np.where(edges[:, :, None], planes / np.where(edges, length, 1.0)[:, :, None], 0.0)
-    return planes, edges, facing
-
-
-def has_area(shapes) -> np.ndarray:
-    """Whether clipped polygons, relative to their receivers, still span a solid angle."""
-    if not len(shapes):
-        return np.zeros(0, bool)
-    twice = np.linalg.norm(polygons.newell_normal(shapes), axis=1)
-    return twice > 1e-20 * np.maximum(np.abs(shapes).max(axis=(1, 2)), 1e-300) ** 2
-
-
-def _choose(which, one, other):
-    width = max(one.shape[1], other.shape[1])
-    return np.where(which[:, None, None], polygons.widen(one, width), polygons.widen(other, width))

@@ -22,7 +22,7 @@ from .planes import Planes
 from .scene import Scene
 from .solids import find_solids
 from .specular import GroupSight
-from .sunlight import Triangles
+from .sun_patches import Triangles
 from .tracing import ChainLimits
 
 PATCHES = 1_000

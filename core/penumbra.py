@@ -20,7 +20,8 @@ from .outlines import Outlines
 from .projection import HalfSpace
 from .screens import Pieces, Screens
 from .sun import Sun
-from .sunlight import Sunlight, Triangles, trace_sun, wide
+from .sun_patches import Triangles
+from .sunlight import Sunlight, trace_sun, wide
 from .tracing import DEEPEST_CHAIN
 
 _NARROW = 0.7

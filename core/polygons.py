@@ -18,9 +18,10 @@ def cross(a, b) -> np.ndarray:
     return out
 
 
-def following(corners) -> np.ndarray:
-    """(m, v, ...) each corner's next one, several times faster than NumPy's ``roll`` on small arrays."""
-    return np.concatenate([corners[:, 1:], corners[:, :1]], axis=1)
+def following(values, axis: int = 1) -> np.ndarray:
+    """Each corner's next one along an axis, several times faster than NumPy's ``roll`` on small arrays."""
+    before = (slice(None),) * axis
+    return np.concatenate([values[(*before, slice(1, None))], values[(*before, slice(1))]], axis=axis)
 
 
 def newell_normal(polygon) -> np.ndarray:
@@ -568,15 +569,15 @@ def convex_moments(corners, lines) -> np.ndarray:
     """
     x, y = corners
     a, b, c = lines
-    across, up = _following(x) - x, _following(y) - y
+    across, up = following(x, 0) - x, following(y, 0) - y
     height = b[:, None] * x
     height += c[:, None] * y
     height += a[:, None]
     height[np.abs(height) < _ON_LINE] = 0.0
-    following = np.concatenate([height[:, 1:], height[:, :1]], axis=1)
-    begin, end, cut = _between_lines(height, following)
+    after = following(height)
+    begin, end, cut = _between_lines(height, after)
     total = _boundary_moments(x, y, across, up, begin, end)
-    below, next_below = height < 0, following < 0
+    below, next_below = height < 0, after < 0
     # along each line from where the polygon's boundary leaves the half-plane to where it comes back
     crossing = below != next_below
     cut[~crossing] = 0.0
@@ -608,10 +609,6 @@ def convex_moments(corners, lines) -> np.ndarray:
 
 _ON_LINE = 1e-13
 """Distance from a line below which a corner counts as lying on it; polygons are of the size of one or less."""
-
-
-def _following(values):
-    return np.concatenate([values[1:], values[:1]])
 
 
 def _between_lines(first, last):

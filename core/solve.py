@@ -8,6 +8,7 @@ import numpy as np
 
 from . import polygons, radiosity
 from .arrays import product
+from .bright import Bright, Source
 from .daylight import Daylight
 from .errors import SceneError
 from .estimate import LEAST, OF_DOUBT, relative_errors, spread_of_facets
@@ -19,7 +20,7 @@ from .parallel import chunks_of_receivers, run_parallel
 from .penumbra import trace_disc
 from .received import Received
 from .result import Result
-from .sources import Bright, Source, SourceView
+from .sources import SourceView
 from .stages import Progress, Recorder
 from .sunlight import NO_SUNLIGHT, Sunlight, trace_sun
 from .transfer import Transfer
@@ -306,7 +307,7 @@ def _gather_bright(
 
     def view(sheet: int) -> SourceView:
         if sheet not in views:
-            views[sheet] = bright.seen_from(*transfer.sheet_corners[sheet])
+            views[sheet] = SourceView.of(bright, *transfer.sheet_corners[sheet])
         return views[sheet]
 
     def evaluate(nodes: Nodes, first: int) -> np.ndarray:

@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .polygons import following
+
 _ON_EDGE, _MOST_ON_EDGE = 1e-12, 1e-6
 """Height of unit vectors over an edge's plane, times the edge's length, up to which they lie on its great circle: at
 least, and at most where corners are near and rounding of their places makes a large angle."""
@@ -60,10 +62,10 @@ def form_factors(
 
 def whole_form_factors(shapes: np.ndarray, normal: np.ndarray) -> np.ndarray:
     """(n,) float: form factors to polygons, as `form_factors` where no screen is in the way."""
-    following = _following(shapes)
-    pole = _cross(following, shapes)
+    after = following(shapes)
+    pole = _cross(after, shapes)
     length = np.sqrt(_dot(pole, pole))
-    angle = np.arctan2(length, _dot(shapes, following))
+    angle = np.arctan2(length, _dot(shapes, after))
     angle *= normal[0] * pole[0] + normal[1] * pole[1] + normal[2] * pole[2]
     return np.divide(angle, length, out=angle, where=length > 0).sum(axis=0) / (2 * np.pi)
 
@@ -75,8 +77,8 @@ def _along_contours(shapes, screens, facing, normal, tolerance: float) -> np.nda
     distance = np.maximum(np.sqrt(_dot(start, start)), _TINY)
     start /= distance
     on_edge = np.clip(tolerance / distance.min(axis=0), _ON_EDGE, _MOST_ON_EDGE)
-    after = _following(start[:, v:].reshape(3, k, w, n), 2).reshape(3, k * w, n)
-    end = np.concatenate([_following(start[:, :v]), after], axis=1)
+    after = following(start[:, v:].reshape(3, k, w, n), 2).reshape(3, k * w, n)
+    end = np.concatenate([following(start[:, :v]), after], axis=1)
     pole = _cross(end, start)  # of polygons that face the point it looks inwards
     pole[:, v:] *= np.repeat(np.where(facing < 0, -1.0, 1.0), w, axis=0)
     length = np.sqrt(_dot(pole, pole))
@@ -94,7 +96,7 @@ def _along_contours(shapes, screens, facing, normal, tolerance: float) -> np.nda
     own, others = slice(0, v), slice(v, v + k * w)
     # of the screens' edges what lies within the polygon, borders not included
     height = heights(own, others)
-    after = _following(height.reshape(v, k, w, n), 2).reshape(v, k * w, n)
+    after = following(height.reshape(v, k, w, n), 2).reshape(v, k * w, n)
     low, high = _between(height, after, _lying(height, after, edge[own], on_edge))
     low, high = np.concatenate([np.zeros((v, n)), low]), np.concatenate([np.ones((v, n)), high])
     # of all edges what each screen covers
@@ -103,9 +105,9 @@ def _along_contours(shapes, screens, facing, normal, tolerance: float) -> np.nda
     for j in range(k):
         mine = slice(v + j * w, v + (j + 1) * w)
         height = heights(mine, every)
-        parts = [_following(height[:, :v], 1)]
+        parts = [following(height[:, :v], 1)]
         if k > 1:
-            parts.append(_following(height[:, v:].reshape(w, k, w, n), 2).reshape(w, k * w, n))
+            parts.append(following(height[:, v:].reshape(w, k, w, n), 2).reshape(w, k * w, n))
         after = np.concatenate(parts, axis=1)
         lies = _lying(height, after, edge[mine], on_edge)
         if lies is not None:
@@ -173,12 +175,6 @@ def _sum_of_gaps(low, high, begin, finish, start, end, pole, length, corners: in
         if j < len(begin):
             reached = np.maximum(reached, finish[j])
     return total / (2 * np.pi)
-
-
-def _following(values: np.ndarray, axis: int = 1) -> np.ndarray:
-    """Each corner's next one."""
-    rest = np.take(values, np.arange(1, values.shape[axis]), axis=axis)
-    return np.concatenate([rest, np.take(values, [0], axis=axis)], axis=axis)
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -7,9 +7,10 @@ from test_visibility import seen_shares
 
 import luzespecular as luz
 from luzespecular import polygons
+from luzespecular.bright import Source
 from luzespecular.materials import Material
 from luzespecular.outlines import Outlines
-from luzespecular.sources import Source, gather_sources
+from luzespecular.sources import gather_sources
 from luzespecular.tracing import ChainLimits
 
 SIZE = np.array([4.0, 3.0, 2.5])

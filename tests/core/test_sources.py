@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 import luzespecular as luz
 from luzespecular import polygons
-from luzespecular.sources import Source, even_illuminance, gather_sources
+from luzespecular.bright import Source, even_illuminance
+from luzespecular.sources import gather_sources
 from luzespecular.tracing import ChainLimits
 
 GLOW = luz.Material(exitance=1000.0)

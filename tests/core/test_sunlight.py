@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import luzespecular as luz
 from luzespecular import polygons
-from luzespecular.sunlight import lit_shares
+from luzespecular.sun_patches import lit_shares
 
 DNI = 80_000.0
 MIRROR = luz.Material(specular_reflectance=0.9)

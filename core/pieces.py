@@ -1,0 +1,94 @@
+"""Pieces of bright polygons as receivers see them, cut where panes dim them or mirrors throw back unevenly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import polygons
+from .outlines import Outlines
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
+    """What receivers see of bright polygons.
+
+    Attributes
+    ----------
+    row, polygon : (n,) int
+        Receiver of each, and which polygon it is a part of.
+    shape : (3, v, n) float, padded
+        Relative to the receiver.
+    weight : (n,) float
+        Exitance times what panes let through [lm/m²].
+    """
+
+    row: np.ndarray
+    polygon: np.ndarray
+    shape: np.ndarray
+    weight: np.ndarray
+
+    def take(self, index) -> Shapes:
+        """Some of them ``(k,)`` int."""
+        return Shapes(self.row[index], self.polygon[index], self.shape.take(index, axis=2), self.weight[index])
+
+
+def past_blocker(outlines: Outlines, polygon, outline: int, seen: Shapes, planes, edges) -> list[Shapes]:
+    """Polygons less a blocker's cone; behind a pane they are kept, dimmed."""
+    kept = []
+    material = outlines.materials[outline]
+    row, shape, weight, which = seen.row, seen.shape.transpose(2, 1, 0), seen.weight, seen.polygon
+    for e in range(planes.shape[1]):
+        if not len(row):
+            break
+        wall, edge = planes[row, e], edges[row, e]
+        outside = polygons.clip(shape, -wall)
+        some = np.flatnonzero(edge & has_area(outside))
+        kept.append(Shapes(row[some], which[some], outside[some].transpose(2, 1, 0), weight[some]))
+        inside = polygons.clip(shape, wall)
+        inside = inside if edge.all() else _choose(edge, inside, shape)
+        some = np.flatnonzero(has_area(inside))
+        row, which, shape, weight = row[some], which[some], inside[some], weight[some]
+    if material.is_transparent:
+        plane = polygons.newell_normal(polygon)
+        centre = shape.mean(axis=1)
+        length = np.linalg.norm(centre, axis=1) * np.linalg.norm(plane)
+        through = material.transmittance_at((centre @ plane) / np.maximum(length, 1e-300))
+        kept.append(Shapes(row, which, shape.transpose(2, 1, 0), weight * through))
+    return kept
+
+
+def joined(parts: list[Shapes]) -> Shapes:
+    """All polygons in one."""
+    parts = [p for p in parts if len(p.row)] or parts[:1]
+    return Shapes(
+        np.concatenate([p.row for p in parts]),
+        np.concatenate([p.polygon for p in parts]),
+        np.ascontiguousarray(polygons.joined([p.shape.transpose(2, 1, 0) for p in parts]).transpose(2, 1, 0)),
+        np.concatenate([p.weight for p in parts]),
+    )
+
+
+def edge_cones(windows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Planes through the eye and a window's edges, positive inside; which are edges; from which side it is seen."""
+    planes = polygons.cross(windows, np.roll(windows, -1, axis=1))
+    facing = np.einsum("rc,rc->r", polygons.newell_normal(windows), windows[:, 0])
+    planes *= np.sign(facing)[:, None, None]
+    length = np.linalg.norm(planes, axis=2)
+    edges = length > 1e-14 * np.linalg.norm(windows, axis=2).max(axis=1)[:, None] ** 2
+    planes = np.where(edges[:, :, None], planes / np.where(edges, length, 1.0)[:, :, None], 0.0)
+    return planes, edges, facing
+
+
+def has_area(shapes) -> np.ndarray:
+    """Whether clipped polygons, relative to their receivers, still span a solid angle."""
+    if not len(shapes):
+        return np.zeros(0, bool)
+    twice = np.linalg.norm(polygons.newell_normal(shapes), axis=1)
+    return twice > 1e-20 * np.maximum(np.abs(shapes).max(axis=(1, 2)), 1e-300) ** 2
+
+
+def _choose(which, one, other):
+    width = max(one.shape[1], other.shape[1])
+    return np.where(which[:, None, None], polygons.widen(one, width), polygons.widen(other, width))
