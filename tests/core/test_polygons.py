@@ -336,3 +336,26 @@ def test_pieces_merged_cover_the_same_and_are_convex_and_fewer(seed, cuts):
     assert seen[0] == pytest.approx(seen[1], rel=1e-9)
     if len(kept) == len(pieces):
         assert len(merged) < len(pieces), "all cuts of a square can be mended, in part at least"
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.integers(1, 3),
+    st.integers(3, 6),
+    st.integers(0, 2**31),
+    st.floats(-1.2, 1.2),
+)
+def test_few_polygons_are_clipped_like_many(count, corners, seed, offset):
+    rng = np.random.default_rng(seed)
+    angle = 2 * np.pi * np.arange(corners) / corners
+    ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(corners)], axis=1)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    few = (ring + rng.uniform(-0.5, 0.5, (count, 1, 3))) @ turn.T
+    normal = rng.normal(size=3)
+    normal /= np.linalg.norm(normal)
+    assert few.size <= polygons._FEWEST
+    clipped = polygons.clip(few, normal, offset)
+    many = polygons.clip(np.tile(few, (30, 1, 1)), normal, offset)
+    np.testing.assert_allclose(polygons.areas(clipped), polygons.areas(many)[:count], atol=1e-12)
+    assert (clipped @ normal - offset).min() > -1e-12 or not polygons.areas(clipped).any()
+    np.testing.assert_allclose(polygons.widen(clipped, many.shape[1]), many[:count], atol=1e-12)
