@@ -59,6 +59,11 @@ class Fingerprint:
             return "the same surfaces in another order"
         return ""
 
+    def changed(self, other: Fingerprint) -> set[str]:
+        """Surfaces that only one of the two has, or that are of another shape or mirror or transmit otherwise there."""
+        before, now = ({name: rest for name, *rest in f.surfaces} for f in (self, other))
+        return {name for name in before.keys() | now.keys() if before.get(name) != now.get(name)}
+
 
 def _shape(surface: Surface) -> str:
     digest = hashlib.sha256()

@@ -104,6 +104,7 @@ def gather_nodes(
     report: Callable[[float], None],
     allow: Callable[[int], None] = lambda rows: None,
     convex: ConvexRoom | None = None,
+    keep: Callable[[Nodes, np.ndarray, Rows], np.ndarray] = lambda nodes, members, rows: members,
 ) -> tuple[Nodes, Rows, np.ndarray]:
     """Form factors of all nodes.
 
@@ -121,6 +122,8 @@ def gather_nodes(
         Called before room is taken for so many nodes; may raise where that is too much.
     convex : ConvexRoom, optional
         Where nothing stands in the way.
+    keep : callable(nodes, members, rows) -> (k,) int
+        Enters rows of some nodes that are known, and tells which are not.
 
     Returns
     -------
@@ -149,7 +152,7 @@ def gather_nodes(
             report(begun + share * part)
 
         if convex is None:
-            _gather_some(geometry, nodes, members, room, sights, limits, threads, partly)
+            _gather_some(geometry, nodes, keep(nodes, members, room), room, sights, limits, threads, partly)
         else:
             _gather_unhidden(geometry, nodes, members, room, convex, threads, partly)
         done = begun + share

@@ -14,7 +14,7 @@ from .enclosures import Enclosures, keep_apart
 from .errors import SceneError, TransferFileError
 from .fineness import TRIAL_BANDS, TRIAL_TIMES, bands_for, times_for
 from .fingerprint import Fingerprint
-from .form_factors import Conservation, Exchange, gather_nodes, patch_means
+from .form_factors import Conservation, Exchange, Rows, gather_nodes, patch_means
 from .geometry import Geometry, make_geometry
 from .globe import Globe
 from .inspection import inspect, refuse
@@ -27,6 +27,7 @@ from .stages import Progress, Recorder, Stage
 from .store import load_transfer
 from .tracing import ChainLimits, exact_mirrors
 from .transfer import LOOKING, Transfer
+from .unaffected import Unaffected
 
 logger = logging.getLogger(__name__)
 
@@ -70,8 +71,9 @@ def prepare(
         Surfaces whose faces are wanted; results know these alone. The others take part in the interreflection, cut no
         finer than it needs. Default: all.
     reuse : Transfer, optional
-        An earlier one, whose form factors are kept where they hold (see `Transfer.with_materials`); where they do not,
-        the scene is prepared anew, and ``stages`` say why.
+        An earlier one, whose form factors are kept where they hold: all where shapes, mirrors and panes are the same
+        (see `Transfer.with_materials`); where surfaces were moved, added or taken away within the scene's bounding box,
+        those of receivers that see nothing of these, before or now. ``stages`` say how many, or why none.
     cache : path, optional
         A file as by `Transfer.save`, used in the same way; where it does not hold it is written anew.
     progress : callable(fraction, stage_name) -> bool, optional
@@ -107,7 +109,7 @@ def prepare(
         return kept
     common = (options, threads, memory)
     if options.accuracy is None:
-        transfer = _prepared(scene, options.bands, 1.0, *common, recorder)
+        transfer = _prepared(scene, options.bands, 1.0, *common, recorder, reuse)
     else:
         times = times_for(options.accuracy)
         with recorder.stage("trial solution", 0.0):
@@ -152,7 +154,6 @@ def _kept(scene: Scene, options: Options, threads: int, reuse, cache: Path | Non
         difference = reuse.fingerprint.difference(Fingerprint.of(scene, options))
         if not difference:
             return replace(reuse.with_materials(scene), threads=threads)
-        recorder.skip("reuse", f"the transfer was prepared for {difference}")
     if cache is not None:
         if not cache.exists():
             recorder.skip("cache", f"'{cache}' is not there yet")
@@ -166,6 +167,23 @@ def _kept(scene: Scene, options: Options, threads: int, reuse, cache: Path | Non
         note = Stage(LOOKING, 0.0, f"taken from '{cache}'")
         return replace(kept, stages=(*recorder.stages, note))
     return None
+
+
+def _unaffected(reuse: Transfer | None, geometry: Geometry, fingerprint: Fingerprint) -> Unaffected | None:
+    """What of an earlier transfer may hold for a scene of other shapes; None where nothing can."""
+    if reuse is None or reuse.fingerprint.options != fingerprint.options:
+        return None
+    before, planes = reuse.geometry, geometry.planes
+    if planes.size != before.planes.size or not np.array_equal(planes.centre, before.planes.centre):
+        return None  # all coordinates are measured from the middle of the scene
+    if geometry.outlines.facets is not None or before.outlines.facets is not None:
+        return None  # which outlines are large depends on all of them
+    mirrored = np.zeros(len(reuse.nodes.points), bool)
+    mirrored[reuse.specular_rows] = True
+    rows = Rows(
+        reuse.form_factors, reuse.sky_direct, reuse.sky_specular, mirrored, reuse.unlit, reuse.truncated, deep={}
+    )
+    return Unaffected.of(geometry, before, reuse.nodes, rows, fingerprint.changed(reuse.fingerprint))
 
 
 def _cached(transfer: Transfer, cache: Path) -> Transfer:
@@ -200,8 +218,10 @@ def _prepared(
     threads: int,
     memory: float | None,
     recorder: Recorder,
+    reuse: Transfer | None = None,
 ) -> Transfer:
     """See `prepare`: all that follows once the fineness is known."""
+    fingerprint = Fingerprint.of(scene, options)
     globe = Globe.cut_at_horizon(bands)  # a parcel is sky or ground, never both
     with recorder.stage("planes", 0.0):
         planes = find_planes(scene)
@@ -214,6 +234,18 @@ def _prepared(
     with recorder.stage(LOOKING, 0.02):
         lattice = Nodes.of(geometry.fracture, geometry.lattices)
         convex = ConvexRoom.of(geometry, lattice)
+        unaffected = _unaffected(reuse, geometry, fingerprint)
+        kept = 0
+
+        def keep(nodes: Nodes, members: np.ndarray, rows: Rows) -> np.ndarray:
+            nonlocal kept
+            if unaffected is None:
+                return members
+            mine, earlier = unaffected.among(nodes, members)
+            unaffected.enter(rows, mine, earlier)
+            kept += len(mine)
+            return np.setdiff1d(members, mine)
+
         nodes, gathered, unsure = gather_nodes(
             geometry,
             lattice,
@@ -223,6 +255,7 @@ def _prepared(
             lambda done: recorder.report(0.02 + 0.97 * done, LOOKING),
             lambda nodes: _check_memory(geometry, nodes, memory),
             convex,
+            keep,
         )
         patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         first = nodes.weights.node[nodes.weights.start[:-1]]
@@ -233,6 +266,9 @@ def _prepared(
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
         exchange = Exchange(patch_factors.astype(np.float32), spread, conservation.missing, enclosures.of_patches)
     sees_out = bool(gathered.sky_direct.any() or gathered.sky_specular.any())
+    if reuse is not None:
+        what = f"{kept} of {len(nodes.points)} receivers keep their form factors"
+        recorder.skip("reuse", f"the transfer was prepared for {reuse.fingerprint.difference(fingerprint)}; {what}")
     for name, why in needless(geometry, sees_out, convex is not None):
         recorder.skip(name, why)
     recorder.report(1.0, "prepared")
@@ -261,7 +297,7 @@ def _prepared(
         times=times,
         limits=limits,
         threads=threads,
-        fingerprint=Fingerprint.of(scene, options),
+        fingerprint=fingerprint,
         stages=tuple(recorder.stages),
         findings=findings,
     )
