@@ -156,8 +156,7 @@ def _sum_of_gaps(low, high, begin, finish, start, end, pole, length, corners: in
     """(n,): Lambert's sum over what covers ``(k, c, n)`` leave of edges from ``low`` to ``high``."""
     count = low.shape[1]
     if len(begin) > 1:
-        order = np.argsort(begin, axis=0)
-        begin, finish = np.take_along_axis(begin, order, axis=0), np.take_along_axis(finish, order, axis=0)
+        begin, finish = _ordered(begin, finish)
     along = normal[0] * pole[0] + normal[1] * pole[1] + normal[2] * pole[2]
     along /= np.maximum(length, _TINY)
     along[corners:] *= -1.0
@@ -175,6 +174,18 @@ def _sum_of_gaps(low, high, begin, finish, start, end, pole, length, corners: in
         if j < len(begin):
             reached = np.maximum(reached, finish[j])
     return total / (2 * np.pi)
+
+
+def _ordered(begin: np.ndarray, finish: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Covers ``(k, c, n)`` in the order of their beginnings."""
+    if len(begin) == 2:  # several times as quick as by sorting
+        later = begin[0] > begin[1]
+        return (
+            np.stack([np.minimum(*begin), np.maximum(*begin)]),
+            np.stack([np.where(later, finish[1], finish[0]), np.where(later, finish[0], finish[1])]),
+        )
+    order = np.argsort(begin, axis=0)
+    return np.take_along_axis(begin, order, axis=0), np.take_along_axis(finish, order, axis=0)
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
