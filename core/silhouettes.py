@@ -16,8 +16,8 @@ from . import polygons
 _SLIVER = 1e-9
 """Over the extent of all at hand: what is narrower makes no difference, as where two only touch."""
 
-_VOLUMES = 1_000_000
-"""That are held at once."""
+_VOLUMES = 100_000
+"""That are held at once: they stay in cache."""
 
 
 @dataclass(frozen=True, eq=False)
