@@ -11,10 +11,10 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from . import polygons
+from . import polygons, rims
 from .arrays import dots
 from .globe import Globe
-from .projection import Beams, HalfSpace
+from .projection import UNTURNED, Beams, HalfSpace
 from .rays import RayScene
 from .tree import Tree
 from .views import OPEN, SHARED, View, along
@@ -148,23 +148,48 @@ def before(
     """
     whole = (weights > 0) & (view.seen != SHARED)
     tiles = _Tiles.of(facets.globe, beams)
-    hidden, by_tiles = _before_whole(facets, among, tiles, points, weights, whole, view, past)
+    hidden, beside, by_tiles = _before_whole(facets, among, tiles, points, beams, weights, whole, view, past)
+    view, left, by_many = _before_sky(facets, among, points, beams, weights, view, beside, beside & whole)
     kept, by_parts = _before_parts(facets, among, tiles, points, weights, view, normals, past)
     clear = replace(
         view,
         seen=np.where(hidden, SHARED, view.seen),
-        part_row=view.part_row[kept],
-        part_beam=view.part_beam[kept],
-        part_seen=view.part_seen[kept],
-        part_share=view.part_share[kept],
-        part_direction=view.part_direction[kept],
+        **{f: np.concatenate([getattr(view, f)[kept], left[f]]) for f in left},
     )
-    found = (np.concatenate([getattr(one, f.name) for one in (by_tiles, by_parts)]) for f in fields(Found))
-    return clear, Found(*found)
+    every = (by_tiles, by_many, by_parts)
+    return clear, Found(*(np.concatenate([getattr(one, f.name) for one in every]) for f in fields(Found)))
 
 
-def _before_whole(facets: Facets, among: Tree, tiles: _Tiles, points, weights, whole, view: View, past):
-    """Which of the beams ``(r, k)`` that see one thing see a facet before it; and these facets."""
+def _before_sky(facets: Facets, among: Tree, points, beams: Beams, weights, view: View, beside, whole):
+    """Facets before the sky in beams ``(r, k)`` beside rims, by many rays: in ``whole`` beams and in parts.
+
+    The view is that without these, and what they leave of the sky is listed as parts.
+    """
+    parts = np.flatnonzero((view.part_seen == OPEN) & beside[view.part_row, view.part_beam])
+    row, beam = np.nonzero(whole)
+    share = np.append(np.ones(len(row)), view.part_share[parts])
+    row, beam = np.append(row, view.part_row[parts]), np.append(beam, view.part_beam[parts])
+    number, outline, directions, distance, of_beam, left, towards = rims.sampled(
+        facets.rays, among, facets.large_rays, points, beams, row, beam
+    )
+    told = ~np.isnan(left)
+    told[: len(row) - len(parts)] = True  # nothing large is in these
+    left = np.where(np.isnan(left), 1.0, left)
+    towards = np.where((left < 1.0)[:, None], towards, beams.directions[beam])
+    others = np.setdiff1d(np.arange(len(view.part_row)), parts[told[len(row) - len(parts) :]])
+    names = ("part_row", "part_beam", "part_seen", "part_share", "part_direction")
+    some = np.flatnonzero(told & (left > 0))
+    sky = row[some], beam[some], np.full(len(some), OPEN), share[some] * left[some], towards[some]
+    weight = weights[row, beam][number] * share[number] * of_beam
+    return (
+        replace(view, seen=np.where(whole, SHARED, view.seen), **{f: getattr(view, f)[others] for f in names}),
+        dict(zip(names, sky, strict=True)),
+        Found(row[number], facets.small[outline], points[row[number]], directions, distance, weight),
+    )
+
+
+def _before_whole(facets: Facets, among: Tree, tiles: _Tiles, points, beams: Beams, weights, whole, view: View, past):
+    """Which of the beams ``(r, k)`` that see one thing see a facet before it, which are near to such; and these."""
     sent = np.logical_or.reduceat(whole.take(tiles.order, axis=1), tiles.starts, axis=1)
     if len(points) >= _FEW_ROWS:
         sent &= among.may_meet(points, tiles.directions)
@@ -187,11 +212,25 @@ def _before_whole(facets: Facets, among: Tree, tiles: _Tiles, points, weights, w
     hidden = hit.take(tiles.of_beam, axis=1) < view.nearest
     hidden |= view.seen == behind.take(tiles.of_beam, axis=1)
     hidden &= whole
-    weight = np.add.reduceat(np.where(hidden, weights, 0.0).take(tiles.order, axis=1), tiles.starts, axis=1)[row, tile]
+    beside = np.zeros(whole.shape, bool)
+    if past is None and beams.turn is UNTURNED:
+        sky = whole & (view.seen == OPEN)
+        above, met = sky.take(tiles.middle, axis=1), np.isfinite(hit)
+        lit = tiles.summed(np.where(sky, weights, 0.0))
+        partly = np.zeros(whole.shape, bool)
+        some = view.part_seen == OPEN
+        partly[view.part_row[some], view.part_beam[some]] = True
+        open_ = (above & ~met) | partly.take(tiles.middle, axis=1)
+        near = rims.mixed_tiles(facets.globe, tiles.parcels, met & above, open_, lit)
+        beside = near.take(tiles.of_beam, axis=1) & (sky | ~whole) & (weights > 0)
+        hidden &= ~beside
+    weight = tiles.summed(np.where(hidden, weights, 0.0))[row, tile]
     shows = np.flatnonzero(weight > 0)
     mine = mine[shows]
-    return hidden, Found(
-        row[shows], facets.small[outline[mine]], origins[mine], directions[mine], distance[shows], weight[shows]
+    return (
+        hidden,
+        beside,
+        Found(row[shows], facets.small[outline[mine]], origins[mine], directions[mine], distance[shows], weight[shows]),
     )
 
 
@@ -246,6 +285,8 @@ class _Tiles:
         The beam nearest to each tile's middle.
     directions : (t, 3) float
         Of that beam.
+    parcels : (t,) int
+        On the coarser globe; of mirrored beams before the mirror.
     """
 
     of_beam: np.ndarray
@@ -253,12 +294,17 @@ class _Tiles:
     starts: np.ndarray
     middle: np.ndarray
     directions: np.ndarray
+    parcels: np.ndarray
+
+    def summed(self, values: np.ndarray) -> np.ndarray:
+        """(r, t): sums of beams' values ``(r, k)``."""
+        return np.add.reduceat(values.take(self.order, axis=1), self.starts, axis=1)
 
     @classmethod
     def of(cls, globe: Globe, beams: Beams) -> _Tiles:
         every = np.arange(len(beams.columns))
         if globe is beams.hemisphere.globe:
-            return cls(every, every, every, every, beams.directions)
+            return cls(every, every, every, every, beams.directions, beams.hemisphere.parcels[beams.columns])
         parcel = globe.parcel_of(beams.hemisphere.directions[beams.columns])
         order = np.argsort(parcel, kind="stable")
         starts = np.flatnonzero(np.diff(parcel[order], prepend=-1))
@@ -267,4 +313,4 @@ class _Tiles:
         sums = np.add.reduceat(beams.directions[order], starts, axis=0)
         aside = dots(beams.directions, sums[of_beam])
         middle = np.lexsort((-aside, of_beam))[starts]
-        return cls(of_beam, order, starts, middle, beams.directions[middle])
+        return cls(of_beam, order, starts, middle, beams.directions[middle], parcel[order[starts]])
