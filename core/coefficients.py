@@ -16,7 +16,6 @@ from .daylight import Daylight
 from .form_factors import patch_means, trusted
 from .gather import gather
 from .geometry import sight_of
-from .nodes import Weights
 from .parallel import run_parallel
 from .radiosity import all_settled
 from .result import coplanar
@@ -24,6 +23,7 @@ from .solve import patch_means as means_over_patches
 from .solve import patch_properties
 from .sunlight import light_points, trace_sun
 from .transfer import Transfer
+from .weights import Weights
 
 _COLUMNS = 2048
 """Unit lights whose reflections are found together: all of them at first solve the same equations anew."""

@@ -92,7 +92,7 @@ class ConvexRoom:
         return beside.any() & (heights[:, ~beside] > 10 * self.tolerance).all(axis=1)
 
     def factors(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
-        """Form factors by Lambert's contour formula (see `polygons.lambert_form_factor`), exact near and far.
+        """Form factors by Lambert's contour formula (Lambert 1760; e.g. Howell, C-1), exact near and far.
 
         Parameters
         ----------

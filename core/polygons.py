@@ -521,33 +521,6 @@ def _cut(p, s, inside) -> np.ndarray:
     return slots.reshape(-1, 3)[np.flatnonzero(used)[place]]
 
 
-def lambert_form_factor(polygons, normal) -> np.ndarray:
-    """Form factor from a surface element at the origin to polygons wholly above its horizon.
-
-    Lambert's contour formula, F = 1/(2π) Σ β_e (n · γ_e) (Lambert 1760; e.g. Howell, C-1), positive for polygons
-    that run clockwise as the element sees them, that is whose right-hand normal looks at it.
-
-    Parameters
-    ----------
-    polygons : (m, v, 3) array of float, padded, relative to the element
-    normal : (3,) or (m, 3) array of float, unit
-
-    Returns
-    -------
-    (m,) float
-    """
-    p = np.asarray(polygons, float)
-    if not len(p):
-        return np.zeros(0)
-    q = following(p)
-    sides = cross(p, q)
-    length = np.linalg.norm(sides, axis=2)
-    angle = np.arctan2(length, np.einsum("mvc,mvc->mv", p, q))
-    along = np.einsum("mvc,mc->mv", sides, np.broadcast_to(np.asarray(normal, float), (len(p), 3)))
-    ratio = np.divide(angle, length, out=np.zeros_like(angle), where=length > 0)
-    return -(along * ratio).sum(axis=1) / (2 * np.pi)
-
-
 def convex_moments(corners, lines) -> np.ndarray:
     """Area and first moments of convex polygons in the plane, cut by half-planes.
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from .geometry import Geometry
-from .nodes import Weights
 from .projection import Beams
 from .sighting import Rays
 from .tracing import ChainLimits, RaySight
+from .weights import Weights
 
 RAYS = 512
 """From each receiver."""

@@ -24,13 +24,14 @@ from .form_factors import Conservation, Exchange
 from .geometry import Geometry, make_geometry
 from .globe import Globe
 from .inspection import inspect
-from .nodes import Nodes, Weights
+from .nodes import Nodes
 from .options import Options
 from .planes import find_planes
 from .scene import Scene
 from .stages import Stage
 from .tracing import ChainLimits, exact_mirrors
 from .transfer import Transfer
+from .weights import Weights
 from .writing import complete
 
 _DAMAGED = (

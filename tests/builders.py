@@ -55,6 +55,22 @@ def flux(result, name):
     return float(result.illuminance[faces] @ result.areas[faces])
 
 
+def lambert_form_factor(polygons, normal):
+    """(m,): form factors from a surface element at the origin to polygons ``(m, v, 3)`` above its horizon.
+
+    Lambert's contour formula, F = 1/(2π) Σ β_e (n · γ_e) (Lambert 1760; e.g. Howell, C-1), positive for polygons
+    that run clockwise as the element sees them, that is whose right-hand normal looks at it.
+    """
+    p = np.asarray(polygons, float)
+    q = np.roll(p, -1, axis=1)
+    sides = np.cross(p, q)
+    length = np.linalg.norm(sides, axis=2)
+    angle = np.arctan2(length, np.einsum("mvc,mvc->mv", p, q))
+    along = np.einsum("mvc,mc->mv", sides, np.broadcast_to(np.asarray(normal, float), (len(p), 3)))
+    ratio = np.divide(angle, length, out=np.zeros_like(angle), where=length > 0)
+    return -(along * ratio).sum(axis=1) / (2 * np.pi)
+
+
 def frame(normal):
     """Two unit vectors across a unit normal."""
     helper = np.eye(3)[np.argmin(np.abs(normal))]

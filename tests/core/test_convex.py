@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from builders import DARK, box, box_polygons, prepare_coarse, scene_of
+from builders import DARK, box, box_polygons, lambert_form_factor, prepare_coarse, scene_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -89,7 +89,7 @@ def test_factors_are_those_of_each_triangle_by_itself(size, seed):
     found = room.factors(nodes.points[[node]], normal)[0]
     cuts = geometry.fracture
     facing = cuts.element_sheet != nodes.sheet[node]
-    each = polygons.lambert_form_factor(cuts.elements - nodes.points[node], normal)
+    each = lambert_form_factor(cuts.elements - nodes.points[node], normal)
     patch = geometry.targets.patches.of_element
     told = np.bincount(patch[facing], weights=each[facing], minlength=len(found) - 1)
     np.testing.assert_allclose(found[:-1], told, atol=1e-9)

@@ -9,9 +9,9 @@ from layout_samples import WHITE, geometry_of
 import luzespecular as luz
 from luzespecular.gather import Targets, gather
 from luzespecular.globe import Globe
-from luzespecular.nodes import Weights
 from luzespecular.scattered import RAYS, scattered_sight
 from luzespecular.tracing import ChainLimits
+from luzespecular.weights import Weights
 
 FACING_SQUARES = 0.199825
 """Form factor of opposite faces of a cube (Howell, Catalog of Radiation Heat Transfer Configuration Factors, C-11)."""

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from builders import BLACK, DARK, box, box_polygons, cosine_rays, first_hits, flux, prepare_coarse
+from builders import BLACK, DARK, box, box_polygons, cosine_rays, first_hits, flux, lambert_form_factor, prepare_coarse
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -45,7 +45,7 @@ def lux_at(polygons_, materials, points, normals=UP, initial=True):
 def factor(polygon, point, normal=UP):
     """Form factor of the part above the point's horizon; Lambert's formula is tested with the polygons."""
     above = polygons.clip((np.asarray(polygon, float) - point)[None], normal)
-    return float(polygons.lambert_form_factor(above, normal)[0])
+    return float(lambert_form_factor(above, normal)[0])
 
 
 PLACES = st.floats(-3, 3)

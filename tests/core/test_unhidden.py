@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from builders import lambert_form_factor
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -65,7 +66,7 @@ def cut_away(screens, shape=LAMP, eyes=EYES, normal=UP):
                     left.append(polygons.clip(inside, -wall)[0])
                     inside = polygons.clip(inside, wall)
             pieces = left
-        found.append(sum(float(polygons.lambert_form_factor(piece[None], normal)[0]) for piece in pieces))
+        found.append(sum(float(lambert_form_factor(piece[None], normal)[0]) for piece in pieces))
     return np.array(found)
 
 
@@ -109,7 +110,7 @@ def test_screens_with_edges_on_the_lamps_own():
 
 def test_nothing_in_the_way():
     shapes = np.ascontiguousarray((LAMP[None] - EYES[:, None]).transpose(2, 1, 0))
-    whole = polygons.lambert_form_factor(LAMP[None] - EYES[:, None], UP)
+    whole = lambert_form_factor(LAMP[None] - EYES[:, None], UP)
     np.testing.assert_allclose(unhidden.whole_form_factors(shapes, UP), whole, rtol=1e-12)
     np.testing.assert_allclose(past([ring([0, 2, 4], 9.0, 0.0, 0.5, 1.0)]), whole, rtol=1e-12)
     padded = np.concatenate([LAMP, LAMP[-1:], LAMP[-1:]])

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from builders import box_polygons, cosine_rays, first_hits
+from builders import box_polygons, cosine_rays, first_hits, lambert_form_factor
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -97,7 +97,7 @@ def test_shares_in_a_box_are_its_form_factors():
     points = np.array([[1.0, 1.0, 0], [0.2, 2.8, 0], [2, 1.5, 0]])
     shares = seen_shares(points, [0, 0, 1], ROOM.values())
     for point, got in zip(points, shares, strict=True):
-        exact = [polygons.lambert_form_factor((p - point)[None], [0, 0, 1])[0] for p in list(ROOM.values())[1:]]
+        exact = [lambert_form_factor((p - point)[None], [0, 0, 1])[0] for p in list(ROOM.values())[1:]]
         np.testing.assert_allclose(got[1:6], exact, atol=5e-4)
 
 
@@ -183,7 +183,7 @@ def test_a_hole_in_the_ceiling(size, rms):
     ceiling = np.array([[-40, 40, 2.5], [40, 40, 2.5], [40, -40, 2.5], [-40, -40, 2.5]])
     around_the_ceiling = seen_shares(points, [0, 0, 1], [ceiling])[:, -1]
     got = seen_shares(points, [0, 0, 1], around)[:, -1] - around_the_ceiling
-    exact = np.array([polygons.lambert_form_factor((hole - p)[None], [0, 0, 1])[0] for p in points])
+    exact = np.array([lambert_form_factor((hole - p)[None], [0, 0, 1])[0] for p in points])
     assert np.sqrt(np.mean((got / exact - 1) ** 2)) < rms
     assert got.sum() == pytest.approx(exact.sum(), rel=rms)
 
@@ -212,5 +212,5 @@ def test_small_obstacles_are_not_lost():
         x, y = rng.uniform(-1, 1, 2)
         plate = np.array([[x + size, y, 1], [x, y, 1], [x, y + size, 1], [x + size, y + size, 1]])
         total += seen_shares([[0, 0, 0]], [0, 0, 1], [plate])[0, 0]
-        exact += polygons.lambert_form_factor(plate[None], [0, 0, 1])[0]
+        exact += lambert_form_factor(plate[None], [0, 0, 1])[0]
     assert total == pytest.approx(exact, rel=0.5)

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from builders import BLACK, DARK, UNIFORM, box, box_polygons, cosine_rays
+from builders import BLACK, DARK, UNIFORM, box, box_polygons, cosine_rays, lambert_form_factor
 from situations import SINGLE, Outcome, Situation, all_of, holds, near, refused, solved, told
 
 import luzespecular as luz
@@ -54,7 +54,7 @@ def by_lamps(lamps, point, normal) -> float:
     total = 0.0
     for lamp in lamps:
         shown = polygons.clip((np.asarray(lamp, float) - point)[None], np.asarray(normal, float))
-        total += 1000.0 * float(polygons.lambert_form_factor(shown, np.asarray(normal, float))[0])
+        total += 1000.0 * float(lambert_form_factor(shown, np.asarray(normal, float))[0])
     return total
 
 
