@@ -121,6 +121,7 @@ def before(
     view: View,
     normals: np.ndarray,
     past: HalfSpace | None,
+    unseen_backs: np.ndarray,
 ) -> tuple[View, Found]:
     """Find facets that stand before what receivers see.
 
@@ -139,6 +140,8 @@ def before(
         Of the obstacles in the view.
     past : HalfSpace, optional
         Rays begin at its border.
+    unseen_backs : (all,) bool
+        Of all outlines of the scene, those whose backs are not looked for.
 
     Returns
     -------
@@ -149,7 +152,9 @@ def before(
     whole = (weights > 0) & (view.seen != SHARED)
     tiles = _Tiles.of(facets.globe, beams)
     hidden, beside, by_tiles = _before_whole(facets, among, tiles, points, beams, weights, whole, view, past)
-    view, left, by_many = _before_sky(facets, among, points, beams, weights, view, beside, beside & whole)
+    view, left, by_many = _before_sky(
+        facets, among, unseen_backs[facets.large], points, beams, weights, view, beside, beside & whole
+    )
     kept, by_parts = _before_parts(facets, among, tiles, points, weights, view, normals, past)
     clear = replace(
         view,
@@ -160,7 +165,7 @@ def before(
     return clear, Found(*(np.concatenate([getattr(one, f.name) for one in every]) for f in fields(Found)))
 
 
-def _before_sky(facets: Facets, among: Tree, points, beams: Beams, weights, view: View, beside, whole):
+def _before_sky(facets: Facets, among: Tree, unseen_backs, points, beams: Beams, weights, view: View, beside, whole):
     """Facets before the sky in beams ``(r, k)`` beside rims, by many rays: in ``whole`` beams and in parts.
 
     The view is that without these, and what they leave of the sky is listed as parts.
@@ -169,8 +174,9 @@ def _before_sky(facets: Facets, among: Tree, points, beams: Beams, weights, view
     row, beam = np.nonzero(whole)
     share = np.append(np.ones(len(row)), view.part_share[parts])
     row, beam = np.append(row, view.part_row[parts]), np.append(beam, view.part_beam[parts])
+    wider = max(1, beams.hemisphere.globe.bands // facets.globe.bands)
     number, outline, directions, distance, of_beam, left, towards = rims.sampled(
-        facets.rays, among, facets.large_rays, points, beams, row, beam
+        facets.rays, among, facets.large_rays, unseen_backs, points, beams, row, beam, wider
     )
     told = ~np.isnan(left)
     told[: len(row) - len(parts)] = True  # nothing large is in these

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arrays import dots
 from .globe import Globe
 from .hemisphere import direction_of
 from .projection import Beams
@@ -13,8 +14,8 @@ from .tree import Tree
 _LITTLE_SKY = 0.1
 """Receivers that see the sky with more of their weight than this don't depend on single parcels."""
 
-_RAYS = 7
-"""Order of the lattice of rays in a beam: 13 rays."""
+_RAYS = (7, 5, 4)
+"""Order of the lattice of rays in a beam: 13 rays; 5 or 3 where tiles are two or three times as wide."""
 
 
 def mixed_tiles(
@@ -67,8 +68,21 @@ def _neighbours(globe: Globe, parcels: np.ndarray) -> np.ndarray:
     return np.stack([globe.parcel_of(towards) for towards in around], axis=1)
 
 
-def sampled(rays: RayScene, among: Tree, large: RayScene, points: np.ndarray, beams: Beams, row, beam):
+def sampled(
+    rays: RayScene,
+    among: Tree,
+    large: RayScene,
+    unseen_backs: np.ndarray,
+    points: np.ndarray,
+    beams: Beams,
+    row: np.ndarray,
+    beam: np.ndarray,
+    wider: int,
+):
     """Meet facets by many rays in each of some beams ``(n,)``, in what the large outlines leave of them.
+
+    Backs ``(l,)`` bool of large outlines that nobody looks for stand behind facets, and leave what these do. Tiles are
+    ``wider`` than beams by that factor.
 
     Returns
     -------
@@ -84,12 +98,14 @@ def sampled(rays: RayScene, among: Tree, large: RayScene, points: np.ndarray, be
     left_towards : (n, 3) float
         The middle of that.
     """
-    directions = beams.rays(beam, _RAYS).astype(float)
+    directions = beams.rays(beam, _RAYS[min(wider, len(_RAYS)) - 1]).astype(float)
     directions /= np.linalg.norm(directions, axis=2, keepdims=True)
     weight = np.maximum(directions @ beams.hemisphere.normal, 0.0)
     shape = weight.shape
     origins = np.broadcast_to(points[row][:, None], directions.shape).reshape(-1, 3)
-    weight[large.nearest(origins, directions.reshape(-1, 3))[0].reshape(shape) >= 0] = 0.0
+    outline, _ = large.nearest(origins, directions.reshape(-1, 3))
+    unseen = unseen_backs[outline] & (dots(directions.reshape(-1, 3), large.normals[outline]) > 0)
+    weight[((outline >= 0) & ~unseen).reshape(shape)] = 0.0
     total = weight.sum(axis=1, keepdims=True)
     weight = np.divide(weight, total, out=weight, where=total > 0)
     outline, distance = rays.nearest(origins, directions.reshape(-1, 3), among=among)

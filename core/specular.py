@@ -174,7 +174,7 @@ class GroupSight:
             facets, tree = self.outlines.facets, self._facets(chain, [horizon, *beyond])
             if facets is not None and tree is not None:
                 past = beyond[0] if beyond else None
-                view, found = before(facets, tree, origin, beams, weights, view, obstacles.normals, past)
+                view, found = before(facets, tree, origin, beams, weights, view, obstacles.normals, past, unseen_backs)
                 rays = Rays(
                     rows[found.row],
                     found.points,

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from builders import BLACK, prepare_coarse
+from builders import BLACK, box, prepare_coarse
 
 import luzespecular as luz
-from luzespecular import rims
+from luzespecular import facets, rims
 from luzespecular.globe import Globe
 
 EVEN = luz.Daylight(sky=luz.UniformSky(1000.0))
@@ -41,3 +41,27 @@ def test_tiles_beside_silhouettes():
     assert len(mixed) > 20
     assert (np.abs(mixed - 0.5) < 1.5 * high).all()
     assert not rims.mixed_tiles(globe, up, met, ~met, np.full(met.shape, 1 / len(up))).any()
+
+
+@pytest.mark.parametrize("times", [1, 3])
+def test_slits_beside_solids_whose_far_sides_are_large(monkeypatch, times):
+    """Behind a front of small facets stand backs that nobody looks for: no ray that meets one comes through."""
+    scene = box(BLACK, (3, 3, 3), without=("north",))
+    low, high = np.array([0.1, 2.2, 0.05]), np.array([2.9, 2.7, 2.8])
+    corners = np.where(np.indices((2, 2, 2)).reshape(3, -1).T == 1, high, low)
+    corners = np.append(corners, [[1.5, 2.2, 1.4]], axis=0)
+    sides = [(2, 3, 7, 6), (1, 5, 7, 3), (0, 2, 6, 4), (0, 1, 3, 2), (4, 6, 7, 5)]
+    front = [(0, 4, 8), (4, 5, 8), (5, 1, 8), (1, 0, 8)]
+    halves = [half for a, b, c, d in sides for half in ((a, b, c), (a, c, d))]
+    corners[8, 1] -= 0.01  # four planes
+    scene.add("cabinet", corners, BLACK, faces=halves + front)
+    one = prepare_coarse(scene, elements=100, bands=60).solve(EVEN)
+    monkeypatch.setattr(facets, "MANY_OUTLINES", 5)
+    monkeypatch.setattr(facets, "_FEWEST_LARGE", 10)
+    monkeypatch.setattr(facets, "_MOST_LARGE", 10)
+    monkeypatch.setattr(facets, "_FINENESS", ((None, times),))
+    transfer = prepare_coarse(scene, elements=100, bands=60)
+    assert len(transfer.geometry.outlines.facets.small) == 4
+    other = transfer.solve(EVEN)
+    for name in ("south", "floor", "ceiling"):
+        assert other.mean(name) == pytest.approx(one.mean(name), rel=0.03)
