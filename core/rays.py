@@ -73,18 +73,20 @@ class RayScene:
     tolerance: float
 
     @cached_property
-    def _edges(self) -> tuple[np.ndarray, np.ndarray]:
-        edge = np.roll(self.vertices, -1, axis=1) - self.vertices
-        inward = polygons.cross(self.normals[:, None], edge)
-        length = np.linalg.norm(inward, axis=2, keepdims=True)
-        inward = np.where(length > 0, inward / np.where(length > 0, length, 1.0), 0.0)
-        start = np.einsum("owc,owc->ow", inward, self.vertices) - 1e-3 * self.tolerance
-        return inward, np.where(length[:, :, 0] > 0, start, -np.inf)
+    def _edges(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """For each corner, normals ``(o, 3)`` of the edges after it, inward, and what points inside are above ``(o,)``.
 
-    @cached_property
-    def _edge_by_edge(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        inward, start = self._edges
-        return [(np.ascontiguousarray(inward[:, e]), np.ascontiguousarray(start[:, e])) for e in range(start.shape[1])]
+        One after the other, as there may be a million.
+        """
+        found = []
+        for k in range(self.vertices.shape[1]):
+            corner = self.vertices[:, k]
+            inward = polygons.cross(self.normals, self.vertices[:, (k + 1) % self.vertices.shape[1]] - corner)
+            length = np.linalg.norm(inward, axis=1)
+            real = length > 0
+            inward /= np.where(real, length, 1.0)[:, None]
+            found.append((inward, np.where(real, dots(inward, corner) - 1e-3 * self.tolerance, -np.inf)))
+        return found
 
     @cached_property
     def _tree(self) -> Tree:
@@ -229,9 +231,11 @@ class RayScene:
 
     def _within(self, outline, points, directions, distance) -> np.ndarray:
         """(n,) bool: whether rays that meet an outline's plane meet the outline."""
-        inward, start = self._edges
-        height = np.einsum("nwc,cn->wn", inward[outline], points + distance * directions)
-        return (height >= start[outline].T).all(axis=0)
+        places = (points + distance * directions).T
+        inside = np.ones(len(outline), bool)
+        for inward, start in self._edges:
+            inside &= dots(inward.take(outline, axis=0), places) >= start.take(outline)
+        return inside
 
     def pulled_inside(self, outline: int, places, margin) -> np.ndarray:
         """Places in an outline's plane, moved to within the outline where they lie outside.
@@ -248,10 +252,9 @@ class RayScene:
         (n, 3) float
         """
         moved = np.array(places, float)
-        inward, start = self._edges
-        real = np.isfinite(start[outline])
+        edges = [(inward[outline], start[outline]) for inward, start in self._edges]
         for _ in range(2):  # pushing in at one edge may push out at the next
-            for across, least in zip(inward[outline][real], start[outline][real], strict=True):
+            for across, least in edges:
                 moved += np.maximum(least + margin - onto(moved, across), 0.0)[:, None] * across
         return moved
 
@@ -264,7 +267,7 @@ class RayScene:
         near = np.flatnonzero((along > 0) & (np.abs(height) > self.tolerance) & (along < distance.take(ray)))
         ray, candidate, along = ray.take(near), candidate.take(near), along.take(near)
         place = place.take(near, axis=0) + along[:, None] * way.take(near, axis=0)
-        for inward, start in self._edge_by_edge:
+        for inward, start in self._edges:
             inside = np.flatnonzero(dots(inward.take(candidate, axis=0), place) >= start.take(candidate))
             ray, candidate, along = ray.take(inside), candidate.take(inside), along.take(inside)
             place = place.take(inside, axis=0)

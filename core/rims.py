@@ -103,9 +103,10 @@ def sampled(
     weight = np.maximum(directions @ beams.hemisphere.normal, 0.0)
     shape = weight.shape
     origins = np.broadcast_to(points[row][:, None], directions.shape).reshape(-1, 3)
-    outline, _ = large.nearest(origins, directions.reshape(-1, 3))
-    unseen = unseen_backs[outline] & (dots(directions.reshape(-1, 3), large.normals[outline]) > 0)
-    weight[((outline >= 0) & ~unseen).reshape(shape)] = 0.0
+    if len(unseen_backs):
+        outline, _ = large.nearest(origins, directions.reshape(-1, 3))
+        unseen = unseen_backs[outline] & (dots(directions.reshape(-1, 3), large.normals[outline]) > 0)
+        weight[((outline >= 0) & ~unseen).reshape(shape)] = 0.0
     total = weight.sum(axis=1, keepdims=True)
     weight = np.divide(weight, total, out=weight, where=total > 0)
     outline, distance = rays.nearest(origins, directions.reshape(-1, 3), among=among)
