@@ -15,7 +15,7 @@ AXES = {
     "faces": ("faces", "the mirror-shelf room in finer and finer faces"),
     "bands": ("bands", "bands of the globe; parcels go with their square"),
     "planes": ("outlines", "boxes of 0.3 m hung in the room, six planes each"),
-    "facets": ("outlines", "a ball of 1.2 m hung in the room, of more and more facets that all receive"),
+    "facets": ("facets", "a ball of 1.2 m hung in the room, of more and more facets that all receive"),
     "mirrors": ("mirrors", "the shelf cut into strips, each a mirror in a plane of its own"),
     "depth": ("reflections", "mirrors of 0.9 face each other, `specular_cutoff` ends chains after so many"),
 }
