@@ -27,6 +27,11 @@ def dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
 
 
+def box_corners(low, high) -> np.ndarray:
+    """(8, 3) float: corners of a box from its lowest and its highest ``(3,)``."""
+    return np.where(np.indices((2, 2, 2)).reshape(3, -1).T == 1, high, low)
+
+
 def product(matrix: np.ndarray, vector: np.ndarray, exact: bool = False) -> np.ndarray:
     """(m,) float: a float32 matrix times a float64 vector.
 

@@ -41,7 +41,7 @@ class Fingerprint:
             theirs = other.options.get(name)
             if mine != theirs:
                 return f"{name}={mine}, not {name}={theirs}"
-        before, now = ({name: rest for name, *rest in f.surfaces} for f in (self, other))
+        before, now = self._by_name, other._by_name
         for name in now:
             if name not in before:
                 return f"a scene without the surface '{name}'"
@@ -59,9 +59,13 @@ class Fingerprint:
             return "the same surfaces in another order"
         return ""
 
+    @property
+    def _by_name(self) -> dict[str, tuple[str, str]]:
+        return {name: (shape, optics) for name, shape, optics in self.surfaces}
+
     def changed(self, other: Fingerprint) -> set[str]:
         """Surfaces that only one of the two has, or that are of another shape or mirror or transmit otherwise there."""
-        before, now = ({name: rest for name, *rest in f.surfaces} for f in (self, other))
+        before, now = self._by_name, other._by_name
         return {name for name in before.keys() | now.keys() if before.get(name) != now.get(name)}
 
 

@@ -116,7 +116,7 @@ def prepare(
             trial = _prepared(scene, TRIAL_BANDS, min(times, TRIAL_TIMES), *common, Recorder(recorder.part(0.0, 0.2)))
             errors, areas = trial.errors_by_globe(), trial.geometry.fracture.element_areas
             bands = bands_for(options.accuracy, TRIAL_BANDS, errors, areas)
-        transfer = _prepared(scene, bands, times, *common, Recorder(recorder.part(0.2, 1.0), recorder.stages))
+        transfer = _prepared(scene, bands, times, *common, Recorder(recorder.part(0.2, 1.0), recorder.stages), reuse)
     return transfer if cache is None else _cached(transfer, cache)
 
 
@@ -151,8 +151,8 @@ def _kept(scene: Scene, options: Options, threads: int, reuse, cache: Path | Non
     if reuse is not None:
         if not isinstance(reuse, Transfer):
             raise SceneError(f"reuse must be a luzespecular.Transfer, not {type(reuse).__name__}")
-        difference = reuse.fingerprint.difference(Fingerprint.of(scene, options))
-        if not difference:
+        fingerprint = Fingerprint.of(scene, options)
+        if not reuse.fingerprint.difference(fingerprint):
             return replace(reuse.with_materials(scene), threads=threads)
     if cache is not None:
         if not cache.exists():
@@ -164,26 +164,37 @@ def _kept(scene: Scene, options: Options, threads: int, reuse, cache: Path | Non
         except TransferFileError as error:
             recorder.skip("cache", str(error))
             return None
+        if reuse is not None:
+            recorder.skip("reuse", _difference(reuse, fingerprint))
         note = Stage(LOOKING, 0.0, f"taken from '{cache}'")
         return replace(kept, stages=(*recorder.stages, note))
     return None
 
 
-def _unaffected(reuse: Transfer | None, geometry: Geometry, fingerprint: Fingerprint) -> Unaffected | None:
-    """What of an earlier transfer may hold for a scene of other shapes; None where nothing can."""
+def _difference(reuse: Transfer, fingerprint: Fingerprint) -> str:
+    return f"the transfer was prepared for {reuse.fingerprint.difference(fingerprint)}"
+
+
+def _unaffected(reuse: Transfer | None, geometry: Geometry, fingerprint: Fingerprint) -> tuple[Unaffected | None, str]:
+    """What of an earlier transfer may hold for a scene of other shapes, None where nothing can; and in words."""
+    kept = "keep their form factors"
     if reuse is None or reuse.fingerprint.options != fingerprint.options:
-        return None
+        return None, kept
+    if fingerprint.options["accuracy"] is not None:
+        return None, f"{kept}, as fineness is chosen anew for the accuracy"
     before, planes = reuse.geometry, geometry.planes
+    # all coordinates are measured from the middle of the scene
     if planes.size != before.planes.size or not np.array_equal(planes.centre, before.planes.centre):
-        return None  # all coordinates are measured from the middle of the scene
+        return None, f"{kept}, as the scene's bounding box has changed"
+    # which outlines are large depends on all of them
     if geometry.outlines.facets is not None or before.outlines.facets is not None:
-        return None  # which outlines are large depends on all of them
+        return None, f"{kept}, as there are more outlines than are projected"
     mirrored = np.zeros(len(reuse.nodes.points), bool)
     mirrored[reuse.specular_rows] = True
     rows = Rows(
         reuse.form_factors, reuse.sky_direct, reuse.sky_specular, mirrored, reuse.unlit, reuse.truncated, deep={}
     )
-    return Unaffected.of(geometry, before, reuse.nodes, rows, fingerprint.changed(reuse.fingerprint))
+    return Unaffected.of(geometry, before, reuse.nodes, rows, fingerprint.changed(reuse.fingerprint)), kept
 
 
 def _cached(transfer: Transfer, cache: Path) -> Transfer:
@@ -234,7 +245,7 @@ def _prepared(
     with recorder.stage(LOOKING, 0.02):
         lattice = Nodes.of(geometry.fracture, geometry.lattices)
         convex = ConvexRoom.of(geometry, lattice)
-        unaffected = _unaffected(reuse, geometry, fingerprint)
+        unaffected, what = _unaffected(reuse, geometry, fingerprint)
         kept = 0
 
         def keep(nodes: Nodes, members: np.ndarray, rows: Rows) -> np.ndarray:
@@ -267,8 +278,7 @@ def _prepared(
         exchange = Exchange(patch_factors.astype(np.float32), spread, conservation.missing, enclosures.of_patches)
     sees_out = bool(gathered.sky_direct.any() or gathered.sky_specular.any())
     if reuse is not None:
-        what = f"{kept} of {len(nodes.points)} receivers keep their form factors"
-        recorder.skip("reuse", f"the transfer was prepared for {reuse.fingerprint.difference(fingerprint)}; {what}")
+        recorder.skip("reuse", f"{_difference(reuse, fingerprint)}; {kept} of {len(nodes.points)} receivers {what}")
     for name, why in needless(geometry, sees_out, convex is not None):
         recorder.skip(name, why)
     recorder.report(1.0, "prepared")

@@ -46,10 +46,9 @@ def mixed_tiles(
     rows = np.flatnonzero((sky > 0) & (sky < _LITTLE_SKY) & met.any(axis=1))
     if not len(rows):
         return found
-    tiles = np.arange(len(parcels))
     place = np.full(globe.count, len(parcels))
     place[parcels] = np.arange(len(parcels))
-    beside = place[_neighbours(globe, parcels[tiles])]
+    beside = place[_neighbours(globe, parcels)]
     none = np.zeros((len(rows), 1), bool)
     met_too, open_too = (np.concatenate([each[rows], none], axis=1) for each in (met, open_))
     found[rows] = open_too[:, beside].any(axis=2) & met_too[:, beside].any(axis=2)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import polygons
+from .arrays import box_corners
 from .form_factors import Rows
 from .geometry import Geometry
 from .nodes import Nodes
@@ -84,8 +85,7 @@ class Unaffected:
         points, normals = nodes.points[mine], self.geometry.element_normals[nodes.element[mine]]
         blind = np.ones(len(mine), bool)
         for low, high in self.boxes:
-            corners = np.where(np.indices((2, 2, 2)).reshape(3, -1).T == 1, high, low)
-            blind &= self._hidden(points, normals, corners)
+            blind &= self._hidden(points, normals, box_corners(low, high))
         return mine[blind], earlier[blind]
 
     def enter(self, rows: Rows, mine: np.ndarray, earlier: np.ndarray) -> None:
@@ -115,7 +115,7 @@ class Unaffected:
             mine = np.flatnonzero(~hidden & (away > touching))
             share = away[mine, None] / (away[mine, None] - np.minimum(side * there, 0.0))
             places = points[mine, None] + share[..., None] * (corners - points[mine, None])
-            inward = polygons.cross(normal, polygons.following(corner[None])[0] - corner)
+            inward = polygons.cross(normal, polygons.following(corner, axis=0) - corner)
             above = np.einsum("kbc,wc->kbw", places, inward) >= np.einsum("wc,wc->w", inward, corner)
             hidden[mine] = above.all(axis=(1, 2))
         return hidden

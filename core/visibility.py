@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import polygons
-from .arrays import onto
+from .arrays import box_corners, onto
 from .crossings import Candidates, settle_whole
 from .parts import settle_parts
 from .projection import Beams, HalfSpace, Obstacles, edge_planes
@@ -160,11 +160,9 @@ def _distance_to(plane: HalfSpace, points: np.ndarray, directions: np.ndarray) -
 
 
 def _bounding_corners(points: np.ndarray) -> np.ndarray:
-    low, high = points.min(axis=0), points.max(axis=0)
     if len(points) == 1:
         return points
-    pick = np.indices((2, 2, 2)).reshape(3, -1).T
-    return np.unique(np.where(pick, high, low), axis=0)
+    return np.unique(box_corners(points.min(axis=0), points.max(axis=0)), axis=0)
 
 
 def _columns_within(hull, outline, bounded, heights, directions, reach):

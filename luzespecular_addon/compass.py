@@ -26,14 +26,12 @@ _handles: list[object] = []
 
 def register() -> None:
     """Begin to draw; without a window there is nothing to draw on."""
-    if not bpy.app.background:
-        _handles.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL"))
+    drawing.begin(_handles, (_draw, "POST_PIXEL"))
 
 
 def unregister() -> None:
     """Stop drawing."""
-    while _handles:
-        bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+    drawing.end(_handles)
 
 
 def towards(azimuth: float, altitude: float = 0.0) -> NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 import blf
@@ -20,6 +20,19 @@ PADDING = 10
 PANEL_COLOUR = (0.06, 0.06, 0.06, 0.93)
 TEXT_COLOUR = (0.95, 0.95, 0.95, 1.0)
 """The panel brings its own background, so that texts can be read on every theme."""
+
+
+def begin(handles: list[object], *draws: tuple[Callable[[], None], str]) -> None:
+    """Begin to draw on all 3D viewports, each at its moment; without a window there is nothing to draw on."""
+    if not bpy.app.background:
+        add = bpy.types.SpaceView3D.draw_handler_add
+        handles += [add(draw, (), "WINDOW", moment) for draw, moment in draws]
+
+
+def end(handles: list[object]) -> None:
+    """Stop drawing."""
+    while handles:
+        bpy.types.SpaceView3D.draw_handler_remove(handles.pop(), "WINDOW")
 
 
 def size() -> float:

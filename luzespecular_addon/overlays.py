@@ -25,16 +25,12 @@ _handles: list[object] = []
 
 def register() -> None:
     """Begin to draw; without a window there is nothing to draw on."""
-    if not bpy.app.background:
-        add = bpy.types.SpaceView3D.draw_handler_add
-        _handles.append(add(_draw_lines, (), "WINDOW", "POST_VIEW"))
-        _handles.append(add(_draw_pins, (), "WINDOW", "POST_PIXEL"))
+    drawing.begin(_handles, (_draw_lines, "POST_VIEW"), (_draw_pins, "POST_PIXEL"))
 
 
 def unregister() -> None:
     """Stop drawing."""
-    while _handles:
-        bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+    drawing.end(_handles)
 
 
 def _draw_lines() -> None:

@@ -6,6 +6,7 @@ from builders import BLACK, box, prepare_coarse
 
 import luzespecular as luz
 from luzespecular import facets, rims
+from luzespecular.arrays import box_corners
 from luzespecular.globe import Globe
 
 EVEN = luz.Daylight(sky=luz.UniformSky(1000.0))
@@ -48,8 +49,7 @@ def test_slits_beside_solids_whose_far_sides_are_large(monkeypatch, times):
     """Behind a front of small facets stand backs that nobody looks for: no ray that meets one comes through."""
     scene = box(BLACK, (3, 3, 3), without=("north",))
     low, high = np.array([0.1, 2.2, 0.05]), np.array([2.9, 2.7, 2.8])
-    corners = np.where(np.indices((2, 2, 2)).reshape(3, -1).T == 1, high, low)
-    corners = np.append(corners, [[1.5, 2.2, 1.4]], axis=0)
+    corners = np.append(box_corners(low, high), [[1.5, 2.2, 1.4]], axis=0)
     sides = [(2, 3, 7, 6), (1, 5, 7, 3), (0, 2, 6, 4), (0, 1, 3, 2), (4, 6, 7, 5)]
     front = [(0, 4, 8), (4, 5, 8), (5, 1, 8), (1, 0, 8)]
     halves = [half for a, b, c, d in sides for half in ((a, b, c), (a, c, d))]

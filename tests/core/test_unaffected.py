@@ -7,6 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import luzespecular as luz
+from luzespecular.arrays import box_corners
 from luzespecular.form_factors import Rows
 from luzespecular.rays import RayScene
 from luzespecular.unaffected import Unaffected
@@ -44,7 +45,7 @@ def coarse(scene, **options):
 def kept(transfer):
     """How many receivers, of how many, keep their form factors."""
     note = next(stage.skipped for stage in transfer.stages if stage.name == "reuse")
-    words = note.split("; ")[-1].split()
+    words = note.split("; ")[1].split()
     return int(words[0]), int(words[2])
 
 
@@ -144,8 +145,7 @@ def test_what_counts_as_hidden_is_met_by_no_ray(seed):
     normals = rng.normal(size=(400, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     (low, high), *_ = unaffected.boxes + np.array([[0, 0, 0], [0, 0, 0.4]])
-    corners = np.where(np.indices((2, 2, 2)).reshape(3, -1).T == 1, high, low)
-    hidden = unaffected._hidden(points, normals, corners)
+    hidden = unaffected._hidden(points, normals, box_corners(low, high))
     assert 20 < hidden.sum() < 380
     towards = rng.uniform(low, high, size=(400, 60, 3)) - points[:, None]
     above = np.einsum("kbc,kc->kb", towards, normals) > 1e-9
@@ -155,6 +155,25 @@ def test_what_counts_as_hidden_is_met_by_no_ray(seed):
     gets_there = screens.nearest(points[row], towards[row, ray])[1] > 1.0
     assert not hidden[row[gets_there]].any()
     assert len(unaffected.screens) == len(one.outlines.vertices) - 2
+
+
+def test_why_nothing_is_kept_is_told(before, tmp_path, monkeypatch):
+    def told(transfer):
+        return [stage.skipped for stage in transfer.stages if stage.name == "reuse"]
+
+    (bounds,) = told(coarse(two_rooms(place=(0.5, 0.7, 2.4)), reuse=before))
+    assert bounds.endswith("receivers keep their form factors, as the scene's bounding box has changed")
+    moved = two_rooms(place=(0.9, 0.6, 0.8))
+    accurate = coarse(two_rooms(), accuracy=0.1)
+    assert "another shape of 'cabinet" in told(coarse(moved, accuracy=0.1, reuse=accurate))[0]
+    assert told(coarse(moved, accuracy=0.1, reuse=accurate))[0].endswith("chosen anew for the accuracy")
+    path = tmp_path / "moved.npz"
+    coarse(moved, cache=path)
+    (from_file,) = told(coarse(moved, reuse=before, cache=path))
+    assert "another shape of 'cabinet" in from_file
+    monkeypatch.setattr("luzespecular.facets.MANY_OUTLINES", 5)
+    (many,) = told(coarse(moved, reuse=before))
+    assert many.endswith("as there are more outlines than are projected")
 
 
 def test_chains_of_changes_add_up_to_nothing(before):
