@@ -173,9 +173,14 @@ def find_crossings(seen, candidates: Candidates, heights, beams: Beams, obstacle
     edge_sum[pair[lone]] = told.take(lone, axis=0)
     np.multiply.at(share, pair[several], covered[several])
     np.add.at(edge_sum, pair[several], told.take(several, axis=0))
-    last = np.zeros(len(mine), np.int64)
-    last[pair] = np.arange(len(pair))
-    offset = (moment / np.maximum(covered, 1e-12)).astype(np.float32).take(last)[:, None] * normal.take(last, axis=0)
+    # of several edges the one that leaves least tells best where the part is
+    most = np.zeros(len(mine), np.int64)
+    most[pair[lone]] = lone
+    least = np.ones(len(mine))
+    np.minimum.at(least, pair[several], covered[several])
+    several = several[covered[several] <= least[pair[several]]]
+    most[pair[several]] = several
+    offset = (moment / np.maximum(covered, 1e-12)).astype(np.float32).take(most)[:, None] * normal.take(most, axis=0)
     # what is nearer shows at the part's own centre: an edge may stand on the obstacle behind it
     towards = beams.directions.astype(np.float32).take(beam, axis=0) + offset
     distance = _distance_along(heights, obstacles, row, obstacle, towards)

@@ -161,6 +161,19 @@ def test_three_planes_that_meet_leak_nothing():
     np.testing.assert_allclose(shares.sum(axis=1), 1, atol=1e-5)
 
 
+@pytest.mark.parametrize("bands", GLOBES)
+def test_a_wall_seen_at_a_slant_hides_the_one_that_begins_at_its_edge(bands):
+    """The corner of an L-shaped room: in parcels that several edges of the near wall cross, too."""
+    near = np.array([[1, 2, 0], [1, 2, 1.2], [1, 1, 1.2], [1, 1, 0.0]])
+    behind = np.array([[1, 1, 0], [1, 1, 1.2], [2, 1, 1.2], [2, 1, 0.0]])
+    far = np.array([[2, 0, 0], [2, 0, 1.2], [0, 0, 1.2], [0, 0, 0.0]])
+    x, z = np.meshgrid([0.6, 0.9, 0.96, 0.99, 0.999], np.linspace(0.03, 1.17, 9))
+    points = np.stack([x.ravel(), np.full(x.size, 2.0), z.ravel()], axis=1)
+    shares = seen_shares(points, [0, -1, 0], [near, behind, far], bands)
+    assert shares[:, 0].min() > 0.01
+    np.testing.assert_allclose(shares[:, 1], 0, atol=1e-9)
+
+
 def with_hole(size, centre=(2.0, 1.5), height=2.5):
     """A ceiling of 40 m around a square hole."""
     (x, y), h, far = centre, size / 2, 40.0
