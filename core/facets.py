@@ -26,6 +26,10 @@ _FEWEST_LARGE, _MOST_LARGE = 12, 60
 _LARGE = 5e-3
 """Outlines of this share of the area of the scene's bounding box are large."""
 
+_STANDS_OUT = 16
+"""So are the fewest, if they are so many times as large as half of all outlines. Of a mesh of even facets none is:
+beside one that is projected, rays to the middle of what it leaves of a parcel would pass through its place."""
+
 _FINENESS = ((3_000, 1), (20_000, 2), (None, 3))
 """Up to so many facets, parcels of the rays' globe are as wide as so many of the scene's."""
 
@@ -74,7 +78,8 @@ class Facets:
         x, y, z = np.ptp(vertices.reshape(-1, 3), axis=0)
         many = int(np.count_nonzero(areas >= _LARGE * 2 * (x * y + y * z + z * x)))
         order = np.argsort(-areas, kind="stable")
-        count = min(max(many, _FEWEST_LARGE), _MOST_LARGE)
+        stand_out = int(np.count_nonzero(areas >= _STANDS_OUT * np.median(areas)))
+        count = min(max(many, min(stand_out, _FEWEST_LARGE), 1), _MOST_LARGE)
         large, small = np.sort(order[:count]), np.sort(order[count:])
         times = next(times for most, times in _FINENESS if most is None or len(small) <= most)
         bands = min(globe.bands, max(_LEAST_BANDS, globe.bands // times))

@@ -36,7 +36,7 @@ def test_facets_by_rays_are_as_if_projected(monkeypatch, times, rms):
     one = prepare_coarse(scene, elements=300, bands=60).solve(OVERCAST)
     by_rays(monkeypatch, times)
     other = prepare_coarse(scene, elements=300, bands=60)
-    assert len(other.geometry.outlines.facets.small) == 79
+    assert len(other.geometry.outlines.facets.small) == 80, "not one of the ball's, all alike, is projected"
     other = other.solve(OVERCAST)
     apart = other.illuminance / one.illuminance - 1
     assert not np.array_equal(one.illuminance, other.illuminance), "two ways"

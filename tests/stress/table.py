@@ -15,6 +15,7 @@ import invariance
 import kept
 import known_answers
 import lights
+import meshes
 import precision
 import shapes
 import sides
@@ -23,7 +24,7 @@ from situations import Situation
 
 ROOMS = (
     *(known_answers, invariance, degenerate, drawing, energy, lights, extent, precision),
-    *(equilibrium, glass, kept, shapes, sides, year),
+    *(equilibrium, glass, kept, meshes, shapes, sides, year),
 )
 ALIKE = (
     *("E01-scale1", "E01-scale2", "E02-translate0", "E02-translate1", "E02-translate2", "E03-rotz1", "E03-rotz2"),
