@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -132,7 +133,7 @@ class Material:
             return np.full(np.shape(cosine), self.regular_transmittance)
         return pane_optics(cosine, self.refractive_index, self._inner)[1]
 
-    @property
+    @cached_property
     def hemispherical_absorptance(self) -> float:
         """Share of evenly diffuse incident light that is absorbed."""
         if self.refractive_index is None:

@@ -91,3 +91,8 @@ class Outlines:
     def any_specular(self) -> bool:
         """Whether any surface mirrors or transmits regularly."""
         return any(m.is_specular or m.is_transparent for m in self.materials)
+
+    @cached_property
+    def splits_light(self) -> bool:
+        """Whether any surface does both, so that chains may double at each."""
+        return any(m.is_specular and m.is_transparent for m in self.materials)

@@ -114,9 +114,9 @@ class Rays:
         if partial is not None:
             place = np.zeros(weights.shape, np.int64)
             place[weights > 0] = np.arange(len(rays.rows))
-            directions[place[partial.row, partial.beam]] = partial.direction / np.linalg.norm(
-                partial.direction, axis=1, keepdims=True
-            )
+            some = np.flatnonzero(weights[partial.row, partial.beam] > 0)
+            way = partial.direction[some]
+            directions[place[partial.row[some], partial.beam[some]]] = way / np.linalg.norm(way, axis=1, keepdims=True)
         ahead = (past.offset - onto(rays.points, past.normal)) / onto(directions, past.normal)
         return replace(rays, points=rays.points + ahead[:, None] * directions, directions=directions)
 

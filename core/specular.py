@@ -18,7 +18,7 @@ from .globe import Hemisphere
 from .outlines import Outlines
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
 from .sighting import Rays, Sighting, ray_sighting
-from .tracing import DEEPEST_CHAIN, ChainLimits, Tracer
+from .tracing import DEEPEST_CHAIN, ChainLimits, Tracer, thinned
 from .tree import Tree
 from .visibility import Partial, look
 
@@ -31,6 +31,9 @@ _LOOKED_INTO = 4
 _PANES_LOOKED_THROUGH = 12
 _FAINT = 0.01
 """Through panes alone, which don't multiply what is seen, as long as some receiver sees more than this by them."""
+
+_FEW_WILL_DO = 0.1
+"""Where panes mirror as well as transmit, chains that show no receiver more than this are followed as few rays."""
 
 _WINDOWS = 2
 """Earlier mirrors whose edges bound what beams show in part."""
@@ -246,11 +249,10 @@ class GroupSight:
                     mirrors = s.mirrors + (kind == "mirror")
                     partial = self._partial(onward, direction, points, int(o), window)
                     step = (int(o), kind, front)
-                    if chain and _one_by_one(onward.weights, (*chain, step)):
+                    if chain and _one_by_one(onward.weights, (*chain, step), self.outlines.splits_light):
+                        weights = self._few(onward.weights)
                         left.append(
-                            Rays.beyond(
-                                rows, points, beams, onward.weights, partial, product, mirrors, past, len(chain) + 1
-                            )
+                            Rays.beyond(rows, points, beams, weights, partial, product, mirrors, past, len(chain) + 1)
                         )
                         continue
                     following.append(
@@ -269,6 +271,16 @@ class GroupSight:
                     )
         return following
 
+    def _few(self, weights) -> np.ndarray:
+        """Weights of beams ``(r, k)`` of which not all are followed on, where panes mirror as well as transmit."""
+        if not self.outlines.splits_light:
+            return weights
+        row, beam = np.nonzero(weights)
+        kept, heavier = thinned(row, weights[row, beam])
+        few = np.zeros_like(weights)
+        few[row[kept], beam[kept]] = heavier
+        return few
+
     def _partial(self, onward: _Arriving, direction, points, o: int, window) -> Partial | None:
         """Beams that come through outline ``o`` in part, within it and within the windows before it."""
         if not len(onward.row):
@@ -284,8 +296,10 @@ class GroupSight:
         return Partial(onward.row, onward.beam, direction, planes)
 
 
-def _one_by_one(weights: np.ndarray, chain: tuple) -> bool:
+def _one_by_one(weights: np.ndarray, chain: tuple, thinned_out: bool) -> bool:
     """Whether beams of weights ``(r, k)`` are followed as single rays after a chain of mirrors and panes."""
+    if thinned_out and float(weights.sum(axis=1).max()) < _FEW_WILL_DO:
+        return True
     if len(chain) <= _PANES_LOOKED_THROUGH and all(kind == "through" for _, kind, _ in chain):
         return float(weights.sum(axis=1).max()) < _FAINT
     return len(chain) > _LOOKED_INTO or np.count_nonzero(weights) < _FEW_BEAMS

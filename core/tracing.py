@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,10 @@ from .sighting import Rays, Sighting, ray_sighting
 
 DEEPEST_CHAIN = 200
 """No chain is followed further, even between perfect mirrors."""
+
+_FAINT = 3e-4
+"""Where panes mirror as well as transmit, rays that show less than this of what a receiver sees are thinned out to
+fewer that show as much, and go on one way: else they would double at every pane."""
 
 _MOST_IMAGES = 80
 _DEEPEST_IMAGE = 40
@@ -87,6 +91,9 @@ class Tracer:
         rays = Rays.joined(left)
         while len(rays.rows):
             checkpoint()
+            if self.outlines.splits_light:
+                kept, weights = thinned(rays.rows, rays.weights)
+                rays = replace(rays.take(kept), weights=weights)
             flight = self.outlines.rays.through_mirrors(
                 rays.points,
                 rays.directions,
@@ -129,12 +136,47 @@ class Tracer:
             mine = np.flatnonzero(front == side)
             if not len(mine):
                 continue
-            for kind, share in self.outlines.ways(o, side, cosine[mine]):
-                after = rays.take(mine).onward(places[mine], share, self.outlines.normals[o], kind)
+            some = rays.take(mine)
+            for kind, share in _either(list(self.outlines.ways(o, side, cosine[mine])), some):
+                going = np.flatnonzero(share > 0)
+                after = some.take(going).onward(places[mine[going]], share[going], self.outlines.normals[o], kind)
                 kept = (after.throughput >= self.limits.cutoff) & (after.depth < DEEPEST_CHAIN)
                 np.add.at(truncated, after.rows[~kept], after.weights[~kept])
                 onward.append(after.take(np.flatnonzero(kept)))
         return onward
+
+
+def thinned(rows, weights) -> tuple[np.ndarray, np.ndarray]:
+    """Which of rays of some weights ``(n,)`` to follow, and the weights of these: faint ones for those left out too."""
+    chance = np.minimum(weights / _FAINT, 1.0)
+    kept = np.flatnonzero(_drawn(rows, chance))
+    return kept, weights[kept] / chance[kept]
+
+
+def _either(ways: list[tuple[str, np.ndarray]], rays: Rays) -> list[tuple[str, np.ndarray]]:
+    """Ways on with the share of each ray ``(n,)``: of two, faint rays go one for both, in proportion to the shares."""
+    if len(ways) < 2:
+        return ways
+    (one, first), (other, second) = ways
+    both = first + second
+    lone = rays.weights * both <= 2 * _FAINT
+    drawn = _drawn(rays.rows, np.divide(first, both, out=np.zeros_like(both), where=both > 0))
+    return [
+        (one, np.where(lone, np.where(drawn, both, 0.0), first)),
+        (other, np.where(lone, np.where(drawn, 0.0, both), second)),
+    ]
+
+
+def _drawn(rows, chance) -> np.ndarray:
+    """(n,) bool: as many rays of each receiver as their chances ``(n,)`` add up to, evenly spread among them."""
+    order = np.argsort(rows, kind="stable")
+    sums, own = np.cumsum(chance[order]), rows[order]
+    first = np.flatnonzero(np.diff(own, prepend=-1))
+    before = np.concatenate([[0.0], sums[:-1]])
+    start = np.repeat(before[first], np.diff(np.append(first, len(own)))) - 0.5
+    drawn = np.empty(len(rows), bool)
+    drawn[order] = np.floor(sums - start) > np.floor(before - start)
+    return drawn
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 from builders import BLACK, DARK, box_polygons
 from degenerate import by_lamps
-from situations import SINGLE, Outcome, Situation, all_of, holds, near, refused, solved
+from situations import GLOBE, SINGLE, Outcome, Situation, all_of, holds, near, refused, solved
 
 import luzespecular as luz
 
@@ -167,6 +167,18 @@ def frosted() -> Outcome:
     return through([both], EVEN, 300 * math.pi, 1e-3)
 
 
+def stacked(panes: int) -> Outcome:
+    """Sheets of glass one above the other: all that they throw to and fro arrives below."""
+    glass = luz.Material(regular_transmittance=0.85, refractive_index=1.52)
+    cosine = np.sqrt((np.arange(20_000) + 0.5) / 20_000)
+    mirrored, through_one = glass.specular_at(cosine), glass.transmittance_at(cosine)
+    back, on = np.zeros_like(cosine), np.ones_like(cosine)
+    for _ in range(panes):
+        gap = 1 - back * mirrored
+        on, back = on * through_one / gap, mirrored + through_one**2 * back / gap
+    return through([glass] * panes, EVEN, 1000 * math.pi * on.mean(), GLOBE)
+
+
 def tinted_mirror() -> Outcome:
     """A sheet that mirrors half and lets through a third, above a mirror: the series between both."""
     scene = luz.Scene()
@@ -232,6 +244,8 @@ def situations() -> Iterator[Situation]:
     yield row("a sheet that scatters and transmits", frosted)
     yield row("a sheet that mirrors and transmits", tinted_mirror)
     yield row("a window of twelve panes", window_of_panes)
+    yield row("three sheets that mirror as well", lambda: stacked(3))
+    yield row("ten sheets that mirror as well", lambda: stacked(10), True)
     yield row("a share above 1", lambda: refused(lambda: plain(1.01), "regular_transmittance", "between 0 and 1"))
     yield row(
         "clearer than glass can be",
