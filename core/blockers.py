@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from . import polygons
 from .outlines import Outlines
-from .pieces import Shapes, edge_cones, joined, past_blocker
+from .pieces import Shapes, WholeShapes, edge_cones, joined, past_blocker, tightened
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
 from .silhouettes import Overlaps
@@ -210,6 +211,8 @@ class Standing:
     ----------
     blockers : Blockers
     shapes : (s, v, 3) float
+    counts : (s,) int
+        Corners of the shapes.
     plane : (s,) int
     overlaps : Overlaps
         Of blockers and shapes.
@@ -217,24 +220,32 @@ class Standing:
 
     blockers: Blockers
     shapes: np.ndarray
+    counts: np.ndarray
     plane: np.ndarray
     overlaps: Overlaps
 
+    @cached_property
+    def corners(self) -> np.ndarray:
+        """(3, v, s) float: the shapes'."""
+        return np.ascontiguousarray(self.shapes.transpose(2, 1, 0))
+
     @classmethod
     def of(cls, blockers: Blockers, shapes, plane, corners, tolerance: float) -> Standing:
-        """Those of the blockers that matter to shapes on planes ``(s,)``."""
+        """Those of the blockers that matter to shapes ``(s, v, 3)`` on planes ``(s,)``."""
+        shapes, counts = tightened(shapes)
+        blockers = replace(blockers, vertices=tightened(blockers.vertices)[0])
         may = (blockers.plane == plane[:, None]) | (blockers.plane < 0)
         facing = blockers.facing(corners, None, tolerance)
         overlaps = Overlaps.of(blockers.vertices, shapes, corners, may, facing)
         used, outer = np.unique(overlaps.outer, return_inverse=True)
-        return cls(blockers.take(used), shapes, plane, replace(overlaps, outer=outer.reshape(-1)))
+        return cls(blockers.take(used), shapes, counts, plane, replace(overlaps, outer=outer.reshape(-1)))
 
 
 def light_past(
     outlines: Outlines,
     standing: Standing,
     unseen_backs,
-    seen: Shapes,
+    seen: Shapes | WholeShapes,
     points,
     normal,
     mirrors: Sequence[Reflecting],
@@ -249,7 +260,7 @@ def light_past(
     standing : Standing
     unseen_backs : (o,) bool
         Outlines that nobody need look for who is behind them.
-    seen : Shapes
+    seen : Shapes or WholeShapes
         What is seen of the shapes.
     points : (r, 3) float
     normal : (3,) float
@@ -259,8 +270,11 @@ def light_past(
     received : Received
     """
 
-    def whole(some: Shapes) -> None:
-        received.add(rows[some.row], _reflected(some, mirrors), some.shape, normal)
+    def whole(some: Shapes | WholeShapes) -> None:
+        if isinstance(some, WholeShapes):
+            received.add_whole(rows[some.row], some.weight, some, standing.counts, normal)
+        else:
+            received.add(rows[some.row], _reflected(some, mirrors), some.shape, normal)
 
     blockers, overlaps = standing.blockers, standing.overlaps
     if len(overlaps.outer):
@@ -289,7 +303,8 @@ def light_past(
         panes = np.bincount((row * shapes + overlaps.inner[pairs])[clear[pairs]], minlength=len(every))
         by_pieces &= panes[place] > 0
     if by_pieces.any():
-        whole(_in_pieces(outlines, standing, seen.take(np.flatnonzero(by_pieces)), points))
+        cut = seen.take(np.flatnonzero(by_pieces))
+        whole(_in_pieces(outlines, standing, cut.made() if isinstance(cut, WholeShapes) else cut, points))
         count[by_pieces] = -1
     corners = blockers.vertices.transpose(2, 1, 0)
     for number in np.unique(count[count > 0]).tolist():
@@ -297,6 +312,7 @@ def light_past(
         some, row = seen.take(mine), seen.row[mine]
         blocker = overlaps.outer[pairs[start[mine] + np.arange(number)[:, None]]]
         screens = corners.take(blocker, axis=2).transpose(2, 0, 1, 3) - points[row].T[:, None]
+        some = some.made() if isinstance(some, WholeShapes) else some
         received.add(rows[row], _reflected(some, mirrors), some.shape, normal, screens, facing[blocker, row])
 
 

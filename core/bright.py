@@ -10,6 +10,7 @@ import numpy as np
 from . import polygons
 from .blockers import Before
 from .outlines import Outlines
+from .pieces import tightened
 from .tracing import ChainLimits
 
 FAINT = 1e-4
@@ -180,7 +181,7 @@ def _groups(sources: list[Source], outlines: Outlines) -> list[_Group]:
         room -= len(plane[2])
     return [
         _Group(
-            polygons.pad([source.polygon for _, _, members in some for source in members])[0],
+            tightened(polygons.pad([source.polygon for _, _, members in some for source in members])[0])[0],
             np.array([source.exitance for _, _, members in some for source in members]),
             np.repeat(np.arange(len(some)), [len(members) for _, _, members in some]),
             np.array([normal for normal, _, _ in some]),

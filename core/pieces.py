@@ -34,6 +34,62 @@ class Shapes:
         return Shapes(self.row[index], self.polygon[index], self.shape.take(index, axis=2), self.weight[index])
 
 
+@dataclass(frozen=True, eq=False)
+class WholeShapes:
+    """The same where receivers see all of the polygons: made when they are needed.
+
+    Attributes
+    ----------
+    row, polygon : (n,) int
+    corners : (3, v, s) float, padded
+        Of the polygons.
+    places : (3, r) float
+        Of the receivers.
+    weight : (n,) float
+    """
+
+    row: np.ndarray
+    polygon: np.ndarray
+    corners: np.ndarray
+    places: np.ndarray
+    weight: np.ndarray
+
+    @property
+    def shape(self) -> np.ndarray:
+        """(3, v, n) float."""
+        shape = self.corners.take(self.polygon, axis=2)
+        shape -= self.places.take(self.row, axis=1)[:, None]
+        return shape
+
+    def take(self, index) -> WholeShapes:
+        """Some of them ``(k,)`` int."""
+        return WholeShapes(self.row[index], self.polygon[index], self.corners, self.places, self.weight[index])
+
+    def made(self) -> Shapes:
+        """As parts like others."""
+        return Shapes(self.row, self.polygon, self.shape, self.weight)
+
+
+def tightened(shapes) -> tuple[np.ndarray, np.ndarray]:
+    """Padded polygons ``(m, v, 3)`` without corners that lie on the one before, padded anew; and their corners (m,)."""
+    if not len(shapes):
+        return shapes, np.zeros(0, np.int64)
+    step = np.abs(shapes - shapes[:, np.arange(-1, shapes.shape[1] - 1)]).max(axis=2)
+    apart = step > _SAME * np.ptp(shapes, axis=1).max(axis=1)[:, None]
+    counts = np.maximum(apart.sum(axis=1), 1)
+    width = int(counts.max())
+    if width == shapes.shape[1]:
+        return shapes, counts
+    order = np.argsort(~apart, axis=1, kind="stable")
+    place = np.minimum(np.arange(width), counts[:, None] - 1)
+    rows = np.arange(len(shapes))[:, None]
+    return shapes[rows, order[rows, place]], counts
+
+
+_SAME = 1e-12
+"""Over a polygon's size: corners that are no farther apart are one."""
+
+
 def past_blocker(outlines: Outlines, polygon, outline: int, seen: Shapes, planes, edges) -> list[Shapes]:
     """Polygons less a blocker's cone; behind a pane they are kept, dimmed."""
     kept = []

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from . import unhidden
+from .pieces import WholeShapes
 
 _TOGETHER = 2_000
 """Polygons that nothing hides whose form factors are found together: they stay in cache."""
+
+_MANY = 400
+"""Of so many it costs less to work them out at once than to join them with others."""
 
 _FEW = 64
 """Of so many behind screens it costs less to look at one screen twice than to look at them by themselves."""
@@ -59,6 +65,29 @@ class Received:
         self._held += len(row) * (1 + number)
         if self._held > _MOST:
             self._work_out()
+
+    def add_whole(self, row, weight, seen: WholeShapes, counts, normal) -> None:
+        """Enter polygons that receivers see all of.
+
+        Parameters
+        ----------
+        row, weight, normal
+            As of `add`.
+        seen : WholeShapes
+        counts : (s,) int
+            Corners of its polygons.
+        """
+        corners = counts[seen.polygon]
+        for count in np.flatnonzero(np.bincount(corners)).tolist():
+            mine = np.flatnonzero(corners == count)
+            some = replace(seen.take(mine), corners=seen.corners[:, :count])
+            if len(mine) < _MANY:
+                self.add(row[mine], weight[mine], some.shape, normal)
+                continue
+            for first in range(0, len(mine), _TOGETHER):
+                part = slice(first, first + _TOGETHER)
+                factors = unhidden.whole_form_factors(some.take(part).shape, normal[:, None])
+                self._sum(row[mine[part]], weight[mine[part]], factors)
 
     def illuminance(self) -> np.ndarray:
         """(count,) float: all that was entered [lx]."""

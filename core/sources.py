@@ -18,7 +18,7 @@ from .blockers import Blockers, Standing, above, between, frame, light_past
 from .bright import FAINT, Bright, Source
 from .materials import Material
 from .outlines import Outlines
-from .pieces import Shapes, edge_cones, has_area, joined
+from .pieces import Shapes, WholeShapes, edge_cones, has_area, joined, tightened
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
 from .tracing import ChainLimits
@@ -154,7 +154,7 @@ class _Path:
             if self.beyond is not None and not above(found, self.beyond, outlines.tolerance)[0]:
                 found = found[:0]  # the mirror just used, or one in its plane
             found = self.clipped(found)
-            found = self._apertures[mirror] = found[polygons.areas(found) > outlines.tolerance**2]
+            found = self._apertures[mirror] = tightened(found[polygons.areas(found) > outlines.tolerance**2])[0]
         return found
 
     def mirrored(self, mirror: int, ahead: HalfSpace, aperture, throughput: float) -> _Path:
@@ -199,20 +199,25 @@ class _Leg:
     window: np.ndarray | None = None
     opening: np.ndarray | None = None
 
-    def seen(self, row, which, shapes, weight) -> Shapes:
+    @cached_property
+    def places(self) -> np.ndarray:
+        """(3, r) float: the points."""
+        return np.ascontiguousarray(self.points.T)
+
+    def seen(self, row, which, corners, weight) -> Shapes | WholeShapes:
         """Of pairs of a row and one of some polygons, those where it is seen through the window.
 
         Parameters
         ----------
         row, which : (n,) int
-        shapes : (s, v, 3) float
+        corners : (3, v, s) float
         weight : (n,) float
         """
+        every = WholeShapes(row, which, corners, self.places, weight)
         if self.window is None or not len(row):
-            shape = shapes.transpose(2, 1, 0).take(which, axis=2) - self.points.T.take(row, axis=1)[:, None]
-            return Shapes(row, which, shape, weight)
+            return every
         planes, edges = self.cones
-        shape = shapes.transpose(2, 1, 0).take(which, axis=2) - self.points.T.take(row, axis=1)[:, None]
+        shape = every.shape
         planes, edges = planes.take(row, axis=2), edges.take(row, axis=1)
         height = planes[0, :, None] * shape[0]
         height += planes[1, :, None] * shape[1]
@@ -282,7 +287,7 @@ class SourceView:
         which, row = np.nonzero(bright)
         if not len(row):
             return
-        seen = leg.seen(row, which, standing.shapes, group.exitance[some[which]])
+        seen = leg.seen(row, which, standing.corners, group.exitance[some[which]])
         if len(seen.row):
             normal = path.horizon.normal
             light_past(outlines, standing, unseen, seen, leg.points, normal, path.mirrors, leg.rows, received)
@@ -303,7 +308,8 @@ class SourceView:
             rows = np.flatnonzero(leg.points @ ahead.normal - ahead.offset > tolerance)
             if not len(rows) or not any(above(g.polygons, ahead, tolerance).any() for g in self.bright.groups):
                 continue
-            seen = leg.seen(rows, np.zeros(len(rows), np.int64), aperture, np.ones(len(rows)))
+            seen = leg.seen(rows, np.zeros(len(rows), np.int64), aperture.transpose(2, 1, 0), np.ones(len(rows)))
+            seen = seen.made() if isinstance(seen, WholeShapes) else seen
             opening = np.abs(whole_form_factors(seen.shape, path.horizon.normal))
             bright = np.flatnonzero(throughput * self.bright.brightest * opening > self.bright.least)
             if not len(bright):

@@ -94,30 +94,40 @@ def _along_contours(shapes, screens, facing, normal, tolerance: float) -> np.nda
         return out
 
     own, others = slice(0, v), slice(v, v + k * w)
+
+    def following_of_screens(height: np.ndarray) -> np.ndarray:
+        return following(height.reshape(len(height), -1, w, n), 2).reshape(height.shape)
+
+    def uncovered(mine: slice, some: slice, height: np.ndarray, after: np.ndarray) -> np.ndarray | None:
+        """Edges that lie on a screen's and count as not within it.
+
+        Where two lie on each other with the same inner side, one counts: the later screen's, never the polygon's.
+        """
+        lies = _lying(height, after, edge[mine], on_edge)
+        if lies is not None:
+            plane, other, pair = np.nonzero(lies)
+            alike = (pole[:, mine.start + plane, pair] * pole[:, some.start + other, pair]).sum(axis=0) > 0
+            covered = alike & (some.start + other < mine.start)
+            lies[plane[covered], other[covered], pair[covered]] = False
+        return lies
+
     # of the screens' edges what lies within the polygon, borders not included
     height = heights(own, others)
-    after = following(height.reshape(v, k, w, n), 2).reshape(v, k * w, n)
+    after = following_of_screens(height)
     low, high = _between(height, after, _lying(height, after, edge[own], on_edge))
     low, high = np.concatenate([np.zeros((v, n)), low]), np.concatenate([np.ones((v, n)), high])
     # of all edges what each screen covers
     covers = np.full((2, k, v + k * w, n), 2.0)
-    every = slice(0, v + k * w) if k > 1 else own
     for j in range(k):
         mine = slice(v + j * w, v + (j + 1) * w)
-        height = heights(mine, every)
-        parts = [following(height[:, :v], 1)]
-        if k > 1:
-            parts.append(following(height[:, v:].reshape(w, k, w, n), 2).reshape(w, k * w, n))
-        after = np.concatenate(parts, axis=1)
-        lies = _lying(height, after, edge[mine], on_edge)
-        if lies is not None:
-            # where two lie on each other with the same inner side, one counts: the later screen's, never the polygon's
-            plane, other, pair = np.nonzero(lies)
-            alike = (pole[:, mine.start + plane, pair] * pole[:, other, pair]).sum(axis=0) > 0
-            covered = alike & (other < mine.start)
-            lies[plane[covered], other[covered], pair[covered]] = False
-        covers[:, j, every] = _between(height, after, lies)
-        covers[:, j, mine] = 2.0
+        height = heights(mine, own)
+        after = following(height)
+        covers[:, j, own] = _between(height, after, uncovered(mine, own, height, after))
+        for some in (slice(v, mine.start), slice(mine.stop, v + k * w)):
+            if some.stop > some.start:
+                height = heights(mine, some)
+                after = following_of_screens(height)
+                covers[:, j, some] = _between(height, after, uncovered(mine, some, height, after))
     return _sum_of_gaps(low, high, covers[0], covers[1], start, end, pole, length, v, normal)
 
 

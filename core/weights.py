@@ -68,24 +68,31 @@ class Weights:
 
     def replaced(self, element, node, weight) -> Weights:
         """With other entries for some elements."""
-        count = len(self.start) - 1
-        mine = np.zeros(count, bool)
+        mine = np.zeros(len(self.start) - 1, bool)
         mine[element] = True
-        rows = self.rows
-        keep = ~mine[rows]
-        return Weights.of(
-            np.concatenate([rows[keep], element]),
-            np.concatenate([self.node[keep], node]),
-            np.concatenate([self.weight[keep], weight]),
-            count,
-        )
+        keep = np.flatnonzero(~np.repeat(mine, np.diff(self.start)))
+        kept = np.where(mine, 0, np.diff(self.start))
+        return self._merged(kept, self.node.take(keep), self.weight.take(keep), element, node, weight)
 
     def shared(self, quartered, element, node, weight) -> Weights:
         """With a quarter of the weight for some nodes ``quartered``, and new entries."""
-        kept = np.where(np.isin(self.node, quartered), 0.25, 1.0) * self.weight
-        return Weights.of(
-            np.concatenate([self.rows, element]),
-            np.concatenate([self.node, node]),
-            np.concatenate([kept, weight]),
-            len(self.start) - 1,
-        )
+        share = np.ones(int(max(self.node.max(initial=-1), np.max(quartered, initial=-1))) + 1)
+        share[quartered] = 0.25
+        kept = share.take(self.node)
+        kept *= self.weight
+        return self._merged(np.diff(self.start), self.node, kept, element, node, weight)
+
+    def _merged(self, count, node, weight, element, more_nodes, more_weights) -> Weights:
+        """So many of the entries for each element, in their order, and after them more for elements ``(k,)``."""
+        some = np.flatnonzero(more_weights)
+        some = some[np.argsort(element[some], kind="stable")]
+        more = np.bincount(element[some], minlength=len(count))
+        start = np.concatenate([[0], np.cumsum(count + more)])
+        place = start[1:][element[some]] - np.cumsum(more)[element[some]] + np.arange(len(some))
+        first = np.ones(start[-1], bool)
+        first[place] = False
+        first = np.flatnonzero(first)
+        out = Weights(start, np.empty(start[-1], self.node.dtype), np.empty(start[-1]))
+        out.node[first], out.weight[first] = node, weight
+        out.node[place], out.weight[place] = more_nodes[some], more_weights[some]
+        return out
