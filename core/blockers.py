@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from . import polygons
 from .outlines import Outlines
-from .pieces import Shapes, WholeShapes, edge_cones, joined, past_blocker, tightened
+from .pieces import Shapes, WholeShapes, edge_cones, joined, past_blocker
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
-from .silhouettes import Overlaps
+
+if TYPE_CHECKING:
+    from .standing import Standing
 
 _FEW = 4_000
 """Pairs of a blocker and a shape, times receivers: fewer are told one by one at once."""
@@ -61,16 +62,17 @@ class Blockers:
             *(part[index] for part in (self.vertices, self.normals, self.offsets, self.outline, self.plane))
         )
 
-    def joined(self, others: Blockers) -> Blockers:
+    def joined(self, *others: Blockers) -> Blockers:
         """These and others."""
-        if not len(self) or not len(others):
-            return self if len(self) else others
+        some = [one for one in (self, *others) if len(one)]
+        if len(some) < 2:
+            return some[0] if some else self
         return Blockers(
-            polygons.joined([self.vertices, others.vertices]),
-            np.concatenate([self.normals, others.normals]),
-            np.concatenate([self.offsets, others.offsets]),
-            np.concatenate([self.outline, others.outline]),
-            np.concatenate([self.plane, others.plane]),
+            polygons.joined([one.vertices for one in some]),
+            np.concatenate([one.normals for one in some]),
+            np.concatenate([one.offsets for one in some]),
+            np.concatenate([one.outline for one in some]),
+            np.concatenate([one.plane for one in some]),
         )
 
     def reflected(self, normal, offset: float) -> Blockers:
@@ -141,54 +143,6 @@ def _cut(blockers: Blockers, half_spaces: list[HalfSpace], tolerance: float) -> 
     return replace(blockers, vertices=parts).take(polygons.areas(parts) > tolerance**2)
 
 
-@dataclass(frozen=True, eq=False)
-class Before:
-    """What of outlines lies before some planes, of which parts shine: found once for all receivers.
-
-    Attributes
-    ----------
-    blockers : Blockers
-        For each plane its own.
-    low, high : (k,) float
-        How far what shines on the plane reaches behind and before the blocker's plane.
-    tolerance : float
-    """
-
-    blockers: Blockers
-    low: np.ndarray
-    high: np.ndarray
-    tolerance: float
-
-    @classmethod
-    def of(cls, outlines: Outlines, normals, offsets, shining, plane) -> Before:
-        """Of planes ``(p, 3)``, ``(p,)``, and polygons ``(s, v, 3)`` that shine on planes ``(s,)``."""
-        tolerance = outlines.tolerance
-        height = shining @ outlines.normals.T - outlines.offsets
-        first = np.flatnonzero(np.diff(plane, prepend=-1))
-        low = np.minimum.reduceat(height.min(axis=1), first)
-        high = np.maximum.reduceat(height.max(axis=1), first)
-        above = (outlines.vertices @ normals.T - offsets[:, None, None].T > tolerance).any(axis=1).T
-        number, outline = np.nonzero(above & ((low < -tolerance) | (high > tolerance)))
-        blockers = Blockers.of(outlines, outline, number)
-        parts = polygons.clip(blockers.vertices, normals[number], offsets[number])
-        wide = polygons.areas(parts) > tolerance**2
-        return cls(
-            replace(blockers, vertices=parts).take(wide),
-            low[number, outline][wide],
-            high[number, outline][wide],
-            tolerance,
-        )
-
-    def between(self, corners, half_spaces: list[HalfSpace]) -> Blockers:
-        """Those that may stand before receivers between corners (c, 3), cut to half-spaces that all light is within."""
-        near = corners @ self.blockers.normals.T - self.blockers.offsets
-        apart = (near.max(axis=0) > self.tolerance) & (self.low < -self.tolerance)
-        apart |= (near.min(axis=0) < -self.tolerance) & (self.high > self.tolerance)
-        for half in half_spaces:
-            apart &= above(self.blockers.vertices, half, self.tolerance)
-        return _cut(self.blockers.take(np.flatnonzero(apart)), half_spaces, self.tolerance)
-
-
 def above(vertices, half: HalfSpace, tolerance: float) -> np.ndarray:
     """(m,) bool: polygons ``(m, v, 3)`` that are not wholly beneath a plane."""
     return (vertices @ half.normal - half.offset > tolerance).any(axis=1)
@@ -201,44 +155,6 @@ def frame(points, normal) -> np.ndarray:
     low, high = flat.min(axis=0), flat.max(axis=0)
     places = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
     return places @ across + (points[0] @ normal) * normal
-
-
-@dataclass(frozen=True, eq=False)
-class Standing:
-    """Blockers that may stand before shapes, as seen from between some corners.
-
-    Attributes
-    ----------
-    blockers : Blockers
-    shapes : (s, v, 3) float
-    counts : (s,) int
-        Corners of the shapes.
-    plane : (s,) int
-    overlaps : Overlaps
-        Of blockers and shapes.
-    """
-
-    blockers: Blockers
-    shapes: np.ndarray
-    counts: np.ndarray
-    plane: np.ndarray
-    overlaps: Overlaps
-
-    @cached_property
-    def corners(self) -> np.ndarray:
-        """(3, v, s) float: the shapes'."""
-        return np.ascontiguousarray(self.shapes.transpose(2, 1, 0))
-
-    @classmethod
-    def of(cls, blockers: Blockers, shapes, plane, corners, tolerance: float) -> Standing:
-        """Those of the blockers that matter to shapes ``(s, v, 3)`` on planes ``(s,)``."""
-        shapes, counts = tightened(shapes)
-        blockers = replace(blockers, vertices=tightened(blockers.vertices)[0])
-        may = (blockers.plane == plane[:, None]) | (blockers.plane < 0)
-        facing = blockers.facing(corners, None, tolerance)
-        overlaps = Overlaps.of(blockers.vertices, shapes, corners, may, facing)
-        used, outer = np.unique(overlaps.outer, return_inverse=True)
-        return cls(blockers.take(used), shapes, counts, plane, replace(overlaps, outer=outer.reshape(-1)))
 
 
 def light_past(

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
-from .blockers import Before
 from .outlines import Outlines
 from .pieces import tightened
+from .standing import Shining
 from .tracing import ChainLimits
 
 FAINT = 1e-4
@@ -156,9 +156,9 @@ class _Group:
         return found
 
     @cached_property
-    def before(self) -> Before:
-        """What of the outlines lies before each plane."""
-        return Before.of(self.outlines, self.normals, self.offsets, self.polygons, self.plane)
+    def shining(self) -> Shining:
+        """The sources, and what of the outlines lies before each plane."""
+        return Shining.of(self.outlines, self.polygons, self.plane, self.normals, self.offsets)
 
 
 def _groups(sources: list[Source], outlines: Outlines) -> list[_Group]:

@@ -49,32 +49,47 @@ class Overlaps:
     centre: np.ndarray
 
     @classmethod
-    def of(cls, outer, inner, corners, may, facing) -> Overlaps:
-        """Those that may overlap as seen from anywhere between corners.
+    def of(cls, outer, inner, outer_of, inner_of, place, corners, facing) -> Overlaps:
+        """Those that may overlap as seen from anywhere between the corners of their place.
 
         Parameters
         ----------
         outer, inner : (k, w, 3) and (s, v, 3) float
-        corners : (c, 3) float
-        may : (s, k) bool
-            Pairs that count.
+        outer_of, inner_of : (q,) int
+            Pairs that count, in the order of the inner ones.
+        place : (k,) int
+            Of each outer polygon.
+        corners : (p, c, 3) float
+            Between which points are, place after place.
         facing : (k, c) float
             Positive where a corner is before an outer polygon, negative behind; 0 in its plane.
+
+        Returns
+        -------
+        Overlaps
+            ``centre`` is (p, 3), one for each place.
         """
-        centre = corners.mean(axis=0)
-        outer, inner, eye = outer - centre, inner - centre, corners - centre
-        extent = max(float(np.abs(part).max(initial=1e-300)) for part in (outer, inner, eye))
-        low = np.minimum(inner.min(axis=1), eye.min(axis=0)) - _SLIVER * extent
-        high = np.maximum(inner.max(axis=1), eye.max(axis=0)) + _SLIVER * extent
-        apart = (outer.min(axis=1) > high[:, None]) | (outer.max(axis=1) < low[:, None])
-        number, which = np.nonzero(~apart.any(axis=2) & may)
-        forms, sides = _forms(outer[which], inner[number], extent)
-        free = sides <= 1e-12 * extent
-        near = np.flatnonzero(_within(forms, free, corners - centre, facing[which]))
-        number, which = number[near], which[near]
-        back, along = _forms(inner[number], outer[which], extent)
-        found = cls(which, number, forms[near], back, free[near], along <= 1e-12 * extent, centre)
-        return found.take(np.flatnonzero(found._reached(corners)))
+        centre = corners.mean(axis=1)
+        eye = corners - centre[:, None]
+        outer = outer - centre[place][:, None]
+        at = place[outer_of]
+        one, other = outer[outer_of], inner[inner_of] - centre[at][:, None]
+        low, high = np.minimum(other.min(axis=1), eye.min(axis=1)[at]), np.maximum(other.max(axis=1), eye.max(axis=1)[at])
+        extent = np.maximum(np.maximum(high, -low).max(axis=1), 1e-300)
+        rounding = (_SLIVER * extent)[:, None]
+        apart = (one.min(axis=1) > high + rounding) | (one.max(axis=1) < low - rounding)
+        near = np.flatnonzero(~apart.any(axis=1))
+        one, other, extent, at = one[near], other[near], extent[near], at[near]
+        extent = np.maximum(extent, np.abs(one).max(axis=(1, 2), initial=0.0))
+        outer_of, inner_of = outer_of[near], inner_of[near]
+        forms, sides = _forms(one, other, extent)
+        free = sides <= 1e-12 * extent[:, None]
+        places = _places(eye)
+        near = np.flatnonzero(_within(forms, free, places[at], facing[outer_of]))
+        back, along = _forms(other[near], one[near], extent[near])
+        loose = along <= 1e-12 * extent[near, None]
+        found = cls(outer_of[near], inner_of[near], forms[near], back, free[near], loose, centre)
+        return found.take(np.flatnonzero(found._reached(places[at[near]])))
 
     def take(self, index) -> Overlaps:
         """Some of the pairs."""
@@ -93,14 +108,13 @@ class Overlaps:
 
         ``facing`` (k, any) tells whether points are before or behind the outer polygons, or in their planes.
         """
-        return _within(self.forms, self.free, corners - self.centre, facing[self.outer]) & self._reached(corners)
+        places = _places(corners - self.centre)
+        return _within(self.forms, self.free, places, facing[self.outer]) & self._reached(places)
 
-    def _reached(self, corners) -> np.ndarray:
-        """(q,) bool: outer polygons that reach within all inner edges."""
-        reach = (self.back.reshape(-1, 4) @ _places(corners - self.centre)).reshape(
-            *self.loose.shape, self.back.shape[2] * len(corners)
-        )
-        return ((reach.max(axis=2) > _SLIVER) | self.loose).all(axis=1)
+    def _reached(self, places) -> np.ndarray:
+        """(q,) bool: outer polygons that reach within all inner edges, from some of places (4, c) or (q, 4, c)."""
+        reach = _heights(self.back, places)
+        return ((reach.max(axis=2, initial=-1.0) > _SLIVER) | self.loose).all(axis=1)
 
     def seen(self, points, facing) -> tuple[np.ndarray, np.ndarray]:
         """How each pair overlaps.
@@ -144,26 +158,37 @@ class Overlaps:
 
 
 def _places(points) -> np.ndarray:
-    return np.concatenate([points.T, np.ones((1, len(points)))])
+    """(..., 4, n) float: points ``(..., n, 3)`` as affine forms take them."""
+    out = np.ones((*points.shape[:-2], 4, points.shape[-2]))
+    out[..., :3, :] = np.swapaxes(points, -1, -2)
+    return out
 
 
-def _within(forms, free, corners, facing) -> np.ndarray:
-    """(q,) bool: inner polygons that reach within all outer edges as seen from somewhere between corners."""
+def _heights(forms, places) -> np.ndarray:
+    """(q, w, n) float: what forms ``(q, w, v, 4)`` are at places (4, c), or (q, 4, c) of each pair's own."""
+    pairs, edges, corners = forms.shape[:3]
+    if places.ndim == 2:
+        return (forms.reshape(-1, 4) @ places).reshape(pairs, edges, corners * places.shape[-1])
+    return (forms.reshape(pairs, edges * corners, 4) @ places).reshape(pairs, edges, corners * places.shape[-1])
+
+
+def _within(forms, free, places, facing) -> np.ndarray:
+    """(q,) bool: inner polygons that reach within all outer edges as seen from somewhere between places."""
     before, behind = (facing > 0).any(axis=1), (facing < 0).any(axis=1)
-    heights = (forms.reshape(-1, 4) @ _places(corners)).reshape(*free.shape, forms.shape[2] * len(corners))
-    may = ((heights.max(axis=2) > _SLIVER) | free).all(axis=1) & before
-    may |= ((heights.min(axis=2) < -_SLIVER) | free).all(axis=1) & behind
+    heights = _heights(forms, places)
+    may = ((heights.max(axis=2, initial=-1.0) > _SLIVER) | free).all(axis=1) & before
+    may |= ((heights.min(axis=2, initial=1.0) < -_SLIVER) | free).all(axis=1) & behind
     return may
 
 
-def _forms(edged, others, extent: float) -> tuple[np.ndarray, np.ndarray]:
+def _forms(edged, others, extent) -> tuple[np.ndarray, np.ndarray]:
     """Affine forms of a point's place, positive where others' corners lie within an edge; and edges' lengths (q, w).
 
     Parameters
     ----------
     edged : (q, w, 3) float
     others : (q, v, 3) float
-    extent : float
+    extent : (q,) float
 
     Returns
     -------
@@ -171,10 +196,11 @@ def _forms(edged, others, extent: float) -> tuple[np.ndarray, np.ndarray]:
         Nought where an edge and a corner lie on one line.
     sides : (q, w) float
     """
-    edge = np.roll(edged, -1, axis=1) - edged
+    edge = polygons.following(edged) - edged
     normal = polygons.cross(edge[:, :, None], others[:, None] - edged[:, :, None])
     length = np.sqrt(np.einsum("...c,...c->...", normal, normal))
     side = np.sqrt(np.einsum("...c,...c->...", edge, edge))
+    extent = extent[:, None, None]
     plane = length > 1e-12 * extent * side[:, :, None]
     scale = np.where(plane, 1.0 / np.where(plane, length * extent, 1.0), 0.0)
     forms = np.empty((*length.shape, 4))

@@ -303,12 +303,8 @@ def _gather_bright(
     found = np.zeros(0)
     done = 0.0
     bright = Bright(geometry.outlines, sources, transfer.limits)
-    views: dict[int, SourceView] = {}
-
-    def view(sheet: int) -> SourceView:
-        if sheet not in views:
-            views[sheet] = SourceView.of(bright, *transfer.sheet_corners[sheet])
-        return views[sheet]
+    planes = transfer.sheet_corners
+    views = dict(zip(planes, SourceView.of(bright, list(planes.values())), strict=True))
 
     def evaluate(nodes: Nodes, first: int) -> np.ndarray:
         nonlocal found, done
@@ -324,7 +320,7 @@ def _gather_bright(
             first = 0
             for chunk in together:
                 some = slice(first, first + len(chunk))
-                view(int(sheets[chunk[0]])).add(
+                views[int(sheets[chunk[0]])].add(
                     nodes.points[rows[some]], np.arange(len(rows))[some], received, checkpoint
                 )
                 first += len(chunk)

@@ -14,15 +14,20 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
-from .blockers import Blockers, Standing, above, between, frame, light_past
+from .blockers import Blockers, above, between, frame, light_past
 from .bright import FAINT, Bright, Source
 from .materials import Material
 from .outlines import Outlines
 from .pieces import Shapes, WholeShapes, edge_cones, has_area, joined, tightened
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
+from .standing import Places, Standing
 from .tracing import ChainLimits
 from .unhidden import whole_form_factors
+
+
+_PAIRS = 100_000
+"""Sources times outlines, times receivers' planes, that are looked at together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +82,8 @@ def gather_sources(
         return np.zeros(len(points))
     points = np.asarray(points, float)
     received = Received(len(points), outlines.tolerance)
-    view = SourceView.of(Bright(outlines, sources, limits, faint), points, normal)
+    normal = np.asarray(normal, float)
+    (view,) = SourceView.of(Bright(outlines, sources, limits, faint), [(frame(points, normal), normal)])
     view.add(points, np.arange(len(points)), received, checkpoint)
     return received.illuminance()
 
@@ -102,6 +108,8 @@ class _Path:
         Largest product of the reflectances so far.
     depth : int
         Mirrors so far.
+    family : list
+        Ways of receivers of other planes by the same mirrors, and this one: what is looked for is looked for from all.
     """
 
     bright: Bright
@@ -112,6 +120,7 @@ class _Path:
     blockers: Blockers
     throughput: float
     depth: int
+    family: list[_Path] = field(default_factory=list)
     _sources: dict[int, tuple] = field(default_factory=dict)
     _apertures: dict[int, np.ndarray] = field(default_factory=dict)
     _mirrored: dict[tuple[int, float], _Path] = field(default_factory=dict)
@@ -129,21 +138,18 @@ class _Path:
 
     def sources(self, number: int) -> tuple[np.ndarray, Standing]:
         """Of a group: which of its sources may be seen (s,), what of them, and what may stand before them."""
-        found = self._sources.get(number)
-        if found is None:
-            group, tolerance = self.bright.groups[number], self.bright.outlines.tolerance
-            visible = self.clipped(group.polygons)
-            shown = polygons.areas(visible) > tolerance**2
-            shown &= (group.heights(self.corners) > tolerance).any(axis=1)
-            if self.beyond is not None:
-                shown &= above(group.polygons, self.beyond, tolerance)  # not the mirror's own back
-            which = np.flatnonzero(shown)
-            visible, blockers = visible[which], self.blockers
-            if len(which):
-                blockers = blockers.joined(group.before.between(self.corners, self.limits))
-            standing = Standing.of(blockers, visible, group.plane[which], self.corners, tolerance)
-            found = self._sources[number] = which, standing
-        return found
+        if number not in self._sources:
+            limits = [
+                (np.array([half.normal for half in halves]), np.array([half.offset for half in halves]))
+                for halves in zip(*(path.limits for path in self.family), strict=True)
+            ]
+            places = Places(
+                np.stack([path.corners for path in self.family]), limits, [path.blockers for path in self.family]
+            )
+            found = self.bright.groups[number].shining.standing(places)
+            for path, one in zip(self.family, found, strict=True):
+                path._sources[number] = one
+        return self._sources[number]
 
     def aperture(self, mirror: int) -> np.ndarray:
         """(n, u, 3) float: what of a mirror may be seen, one polygon or none."""
@@ -157,26 +163,36 @@ class _Path:
             found = self._apertures[mirror] = tightened(found[polygons.areas(found) > outlines.tolerance**2])[0]
         return found
 
-    def mirrored(self, mirror: int, ahead: HalfSpace, aperture, throughput: float) -> _Path:
+    def mirrored(self, mirror: int, ahead: HalfSpace, throughput: float) -> _Path:
         """The way on by one more mirror."""
-        key = mirror, float(ahead.normal @ self.bright.outlines.normals[mirror])
-        found = self._mirrored.get(key)
-        if found is None:
-            outlines = self.bright.outlines
-            normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
-            there = between(outlines, self.corners, aperture, [ahead, *self.limits], skip=mirror)
-            passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in self.mirrors]
-            found = self._mirrored[key] = _Path(
-                self.bright,
-                reflect_points(self.corners, normal, offset),
-                self.horizon.reflected(normal, offset),
-                ahead,
-                (*passed, Mirrored(outlines.materials[mirror], normal)),
-                self.blockers.joined(there).reflected(normal, offset),
-                throughput,
-                self.depth + 1,
-            )
-        return found
+        outlines = self.bright.outlines
+        key = mirror, float(ahead.normal @ outlines.normals[mirror])
+        if key not in self._mirrored:
+            family: list[_Path] = []
+            for path in self.family:
+                aperture = path.aperture(mirror)
+                before = path.corners @ ahead.normal - ahead.offset > outlines.tolerance
+                if len(aperture) and before.any():
+                    family.append(path._by(mirror, ahead, aperture, throughput, family))
+                    path._mirrored[key] = family[-1]
+        return self._mirrored[key]
+
+    def _by(self, mirror: int, ahead: HalfSpace, aperture, throughput: float, family: list[_Path]) -> _Path:
+        outlines = self.bright.outlines
+        normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
+        there = between(outlines, self.corners, aperture, [ahead, *self.limits], skip=mirror)
+        passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in self.mirrors]
+        return _Path(
+            self.bright,
+            reflect_points(self.corners, normal, offset),
+            self.horizon.reflected(normal, offset),
+            ahead,
+            (*passed, Mirrored(outlines.materials[mirror], normal)),
+            self.blockers.joined(there).reflected(normal, offset),
+            throughput,
+            self.depth + 1,
+            family,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,11 +270,17 @@ class SourceView:
     straight: _Path
 
     @classmethod
-    def of(cls, bright: Bright, points, normal) -> SourceView:
-        """From receivers of one plane that lie between some points ``(n, 3)`` of it."""
-        normal = np.asarray(normal, float)
-        horizon = HalfSpace(normal, float(normal @ points[0]))
-        return cls(bright, _Path(bright, frame(points, normal), horizon, None, (), Blockers.none(), 1.0, 0))
+    def of(cls, bright: Bright, planes: list[tuple[np.ndarray, np.ndarray]]) -> list[SourceView]:
+        """From receivers of each of some planes: four corners (4, 3) that these lie between, and its normal."""
+        found = []
+        together = max(1, _PAIRS // max(1, len(bright.sources) * len(bright.outlines.vertices)))
+        for first in range(0, len(planes), together):
+            family: list[_Path] = []
+            for corners, normal in planes[first : first + together]:
+                horizon = HalfSpace(normal, float(normal @ corners[0]))
+                family.append(_Path(bright, corners, horizon, None, (), Blockers.none(), 1.0, 0, family))
+            found += [cls(bright, path) for path in family]
+        return found
 
     def add(self, points, rows, received: Received, checkpoint: Callable[[], None] = lambda: None) -> None:
         """Enter what some of the receivers ``(r, 3)`` see, as that of ``rows`` (r,)."""
@@ -322,5 +344,5 @@ class SourceView:
                 reflect(window, normal),
                 opening[bright],
             )
-            way = path.mirrored(mirror, ahead, aperture, throughput)
+            way = path.mirrored(mirror, ahead, throughput)
             self._add_all(way, further, unseen, received, checkpoint)

@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from luzespecular import polygons, unhidden
-from luzespecular.blockers import Blockers, Standing
+from luzespecular.blockers import Blockers
+from luzespecular.standing import Standing
 
 UP = np.array([0.0, 0.0, 1.0])
 EYES = np.array([[0.0, 0.0, 0.0], [0.7, -0.4, 0.0], [-0.9, 0.8, 0.0], [0.05, 1.3, 0.0]])
