@@ -10,7 +10,7 @@ import numpy as np
 
 from . import polygons
 from .outlines import Outlines
-from .pieces import Shapes, WholeShapes, edge_cones, joined, past_blocker
+from .pieces import SeenShapes, Shapes, edge_cones, joined, past_blocker
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
 
@@ -161,7 +161,7 @@ def light_past(
     outlines: Outlines,
     standing: Standing,
     unseen_backs,
-    seen: Shapes | WholeShapes,
+    seen: SeenShapes,
     points,
     normal,
     mirrors: Sequence[Reflecting],
@@ -176,7 +176,7 @@ def light_past(
     standing : Standing
     unseen_backs : (o,) bool
         Outlines that nobody need look for who is behind them.
-    seen : Shapes or WholeShapes
+    seen : SeenShapes
         What is seen of the shapes.
     points : (r, 3) float
     normal : (3,) float
@@ -186,12 +186,18 @@ def light_past(
     received : Received
     """
 
-    def whole(some: Shapes | WholeShapes) -> None:
-        if isinstance(some, WholeShapes):
-            received.add_whole(rows[some.row], some.weight, some, standing.counts, normal)
-        else:
-            received.add(rows[some.row], _reflected(some, mirrors), some.shape, normal)
+    varies = any(mirror.varies for mirror in mirrors)
 
+    def whole(some: SeenShapes) -> None:
+        if varies:
+            enter(some.made()[0])
+        else:
+            received.add_seen(rows[some.row], share * some.weight, some, standing.counts, normal)
+
+    def enter(some: Shapes) -> None:
+        received.add(rows[some.row], _reflected(some, mirrors), some.shape, normal)
+
+    share = float(np.prod([mirror.share(normal[None])[0] for mirror in mirrors]))
     blockers, overlaps = standing.blockers, standing.overlaps
     if len(overlaps.outer):
         facing = blockers.facing(points, unseen_backs, outlines.tolerance)
@@ -215,20 +221,19 @@ def light_past(
     count[hidden[seen.polygon, seen.row]] = -1
     whole(seen.take(np.flatnonzero(count == 0)))
     by_pieces = count > 0
-    if not any(mirror.varies for mirror in mirrors):
+    if not varies:
         panes = np.bincount((row * shapes + overlaps.inner[pairs])[clear[pairs]], minlength=len(every))
         by_pieces &= panes[place] > 0
     if by_pieces.any():
-        cut = seen.take(np.flatnonzero(by_pieces))
-        whole(_in_pieces(outlines, standing, cut.made() if isinstance(cut, WholeShapes) else cut, points))
+        enter(_in_pieces(outlines, standing, seen.take(np.flatnonzero(by_pieces)).made()[0], points))
         count[by_pieces] = -1
     corners = blockers.vertices.transpose(2, 1, 0)
     for number in np.unique(count[count > 0]).tolist():
         mine = np.flatnonzero(count == number)
-        some, row = seen.take(mine), seen.row[mine]
+        some, kept = seen.take(mine).made()
+        mine, row = mine[kept], some.row
         blocker = overlaps.outer[pairs[start[mine] + np.arange(number)[:, None]]]
         screens = corners.take(blocker, axis=2).transpose(2, 0, 1, 3) - points[row].T[:, None]
-        some = some.made() if isinstance(some, WholeShapes) else some
         received.add(rows[row], _reflected(some, mirrors), some.shape, normal, screens, facing[blocker, row])
 
 

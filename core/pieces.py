@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,8 +35,37 @@ class Shapes:
 
 
 @dataclass(frozen=True, eq=False)
-class WholeShapes:
-    """The same where receivers see all of the polygons: made when they are needed.
+class Windows:
+    """What each receiver sees of a mirror, through which it sees all else.
+
+    Attributes
+    ----------
+    corners : (3, w, r) float, padded
+        Relative to the receivers.
+    planes : (3, w, r) float
+        Through each eye and the window's edges, positive inside; nought where there is no edge.
+    edges : (w, r) bool
+    facing : (r,) float
+        Positive where the right-hand normal looks at the receiver.
+    """
+
+    corners: np.ndarray
+    planes: np.ndarray
+    edges: np.ndarray
+    facing: np.ndarray
+
+    @classmethod
+    def of(cls, windows: np.ndarray) -> Windows:
+        """Polygons ``(r, w, 3)``."""
+        planes, edges, facing = edge_cones(windows)
+        edges &= (facing != 0)[:, None]
+        parts = (np.ascontiguousarray(part.transpose(2, 1, 0)) for part in (windows, planes))
+        return cls(*parts, np.ascontiguousarray(edges.T), -facing)
+
+
+@dataclass(frozen=True, eq=False)
+class SeenShapes:
+    """Pairs of a receiver and a bright polygon that it sees, all of it or what a window shows: made when it is needed.
 
     Attributes
     ----------
@@ -46,6 +75,9 @@ class WholeShapes:
     places : (3, r) float
         Of the receivers.
     weight : (n,) float
+    cut : (n,) bool
+        Of which a window shows but a part.
+    windows : Windows or None
     """
 
     row: np.ndarray
@@ -53,21 +85,49 @@ class WholeShapes:
     corners: np.ndarray
     places: np.ndarray
     weight: np.ndarray
+    cut: np.ndarray
+    windows: Windows | None = None
+
+    @classmethod
+    def of(cls, row, polygon, corners, places, weight, windows: Windows | None) -> SeenShapes:
+        """Those pairs of which windows show anything."""
+        every = cls(row, polygon, corners, places, weight, np.zeros(len(row), bool), windows)
+        if windows is None or not len(row):
+            return every
+        shape, planes = every.shape, windows.planes.take(row, axis=2)
+        height = planes[0, :, None] * shape[0]
+        height += planes[1, :, None] * shape[1]
+        height += planes[2, :, None] * shape[2]
+        beside = ((height.max(axis=1) <= 0) & windows.edges.take(row, axis=1)).any(axis=0)
+        cut = (height.min(axis=1) < 0).any(axis=0)
+        return replace(every, cut=cut).take(np.flatnonzero(~beside))
 
     @property
     def shape(self) -> np.ndarray:
-        """(3, v, n) float."""
+        """(3, v, n) float: the polygons, without regard to windows."""
         shape = self.corners.take(self.polygon, axis=2)
         shape -= self.places.take(self.row, axis=1)[:, None]
         return shape
 
-    def take(self, index) -> WholeShapes:
+    def take(self, index) -> SeenShapes:
         """Some of them ``(k,)`` int."""
-        return WholeShapes(self.row[index], self.polygon[index], self.corners, self.places, self.weight[index])
+        picked = {name: getattr(self, name)[index] for name in ("row", "polygon", "weight", "cut")}
+        return replace(self, **picked)
 
-    def made(self) -> Shapes:
-        """As parts like others."""
-        return Shapes(self.row, self.polygon, self.shape, self.weight)
+    def made(self) -> tuple[Shapes, np.ndarray]:
+        """Those of which anything is seen, cut to the windows; and which they are (k,)."""
+        if self.windows is None or not self.cut.any():
+            return Shapes(self.row, self.polygon, self.shape, self.weight), np.arange(len(self.row))
+        whole, cut = np.flatnonzero(~self.cut), np.flatnonzero(self.cut)
+        shape = self.shape
+        part = shape.take(cut, axis=2).transpose(2, 1, 0)
+        for plane in self.windows.planes.take(self.row[cut], axis=2).transpose(1, 2, 0):
+            part = polygons.clip(part, plane)
+        some = has_area(part)
+        index = np.concatenate([whole, cut[some]])
+        parts = polygons.joined([shape.take(whole, axis=2).transpose(2, 1, 0), part[some]])
+        shape = np.ascontiguousarray(parts.transpose(2, 1, 0))
+        return Shapes(self.row[index], self.polygon[index], shape, self.weight[index]), index
 
 
 def tightened(shapes) -> tuple[np.ndarray, np.ndarray]:

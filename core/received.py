@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from . import unhidden
-from .pieces import WholeShapes
+from .pieces import SeenShapes
 
 _TOGETHER = 2_000
 """Polygons that nothing hides whose form factors are found together: they stay in cache."""
@@ -66,17 +66,24 @@ class Received:
         if self._held > _MOST:
             self._work_out()
 
-    def add_whole(self, row, weight, seen: WholeShapes, counts, normal) -> None:
-        """Enter polygons that receivers see all of.
+    def add_seen(self, row, weight, seen: SeenShapes, counts, normal) -> None:
+        """Enter polygons that nothing hides.
 
         Parameters
         ----------
         row, weight, normal
             As of `add`.
-        seen : WholeShapes
+        seen : SeenShapes
         counts : (s,) int
             Corners of its polygons.
         """
+        if seen.windows is not None and seen.cut.any():
+            whole, cut = np.flatnonzero(~seen.cut), np.flatnonzero(seen.cut)
+            some, windows = seen.take(cut), seen.windows
+            screens = windows.corners.take(some.row, axis=2), windows.facing.take(some.row)
+            factors = unhidden.form_factors_within(some.shape, *screens, normal[:, None], self._tolerance)
+            self._sum(row[cut], weight[cut], factors)
+            row, weight, seen = row[whole], weight[whole], seen.take(whole)
         corners = counts[seen.polygon]
         for count in np.flatnonzero(np.bincount(corners)).tolist():
             mine = np.flatnonzero(corners == count)

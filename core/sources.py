@@ -18,7 +18,7 @@ from .blockers import Blockers, above, between, frame, light_past
 from .bright import FAINT, Bright, Source
 from .materials import Material
 from .outlines import Outlines
-from .pieces import Shapes, WholeShapes, edge_cones, has_area, joined, tightened
+from .pieces import SeenShapes, Windows, tightened
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
 from .standing import Places, Standing
@@ -220,40 +220,14 @@ class _Leg:
         """(3, r) float: the points."""
         return np.ascontiguousarray(self.points.T)
 
-    def seen(self, row, which, corners, weight) -> Shapes | WholeShapes:
-        """Of pairs of a row and one of some polygons, those where it is seen through the window.
-
-        Parameters
-        ----------
-        row, which : (n,) int
-        corners : (3, v, s) float
-        weight : (n,) float
-        """
-        every = WholeShapes(row, which, corners, self.places, weight)
-        if self.window is None or not len(row):
-            return every
-        planes, edges = self.cones
-        shape = every.shape
-        planes, edges = planes.take(row, axis=2), edges.take(row, axis=1)
-        height = planes[0, :, None] * shape[0]
-        height += planes[1, :, None] * shape[1]
-        height += planes[2, :, None] * shape[2]
-        beside = ((height.max(axis=1) <= 0) & edges).any(axis=0)
-        whole = (height.min(axis=1) >= 0).all(axis=0)
-        seen = Shapes(row, which, shape, weight)
-        cut = seen.take(np.flatnonzero(~beside & ~whole))
-        part = cut.shape.transpose(2, 1, 0)
-        for plane in planes.transpose(1, 2, 0):
-            part = polygons.clip(part, plane[~beside & ~whole])
-        some = np.flatnonzero(has_area(part))
-        clipped = Shapes(cut.row[some], cut.polygon[some], part[some].transpose(2, 1, 0), cut.weight[some])
-        return joined([seen.take(np.flatnonzero(whole & ~beside)), clipped])
-
     @cached_property
-    def cones(self) -> tuple[np.ndarray, np.ndarray]:
-        """Planes through each eye and its window's edges (3, w, r), positive inside; and which are edges (w, r)."""
-        planes, edges, facing = edge_cones(self.window)
-        return np.ascontiguousarray(planes.transpose(2, 1, 0)), np.ascontiguousarray((edges & (facing != 0)[:, None]).T)
+    def windows(self) -> Windows | None:
+        """The windows."""
+        return None if self.window is None else Windows.of(self.window)
+
+    def seen(self, row, which, corners, weight) -> SeenShapes:
+        """Of pairs ``(n,)`` of a row and one of some polygons ``(3, v, s)``, those where anything is seen of it."""
+        return SeenShapes.of(row, which, corners, self.places, weight, self.windows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -330,8 +304,8 @@ class SourceView:
             rows = np.flatnonzero(leg.points @ ahead.normal - ahead.offset > tolerance)
             if not len(rows) or not any(above(g.polygons, ahead, tolerance).any() for g in self.bright.groups):
                 continue
-            seen = leg.seen(rows, np.zeros(len(rows), np.int64), aperture.transpose(2, 1, 0), np.ones(len(rows)))
-            seen = seen.made() if isinstance(seen, WholeShapes) else seen
+            one = np.zeros(len(rows), np.int64)
+            seen, _ = leg.seen(rows, one, aperture.transpose(2, 1, 0), np.ones(len(rows))).made()
             opening = np.abs(whole_form_factors(seen.shape, path.horizon.normal))
             bright = np.flatnonzero(throughput * self.bright.brightest * opening > self.bright.least)
             if not len(bright):

@@ -9,6 +9,8 @@ Arrays run over many pairs of a point and a polygon along their last axis, so th
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .polygons import following
@@ -22,7 +24,7 @@ _NO_EDGE = 1e-11
 
 _TINY = 1e-300
 
-_VALUES = 40_000
+_VALUES = 80_000
 """Corners times edges times pairs that are looked at together: they stay in cache."""
 
 
@@ -53,10 +55,43 @@ def form_factors(
     step = max(16, _VALUES // (edges * max(edges - corners, 1)))
     found = np.empty(count)
     normal = np.broadcast_to(normal.reshape(3, -1), (3, count))
-    for first in range(0, count, step):
-        some = slice(first, first + step)
-        parts = shapes[..., some], screens[..., some], facing[:, some], normal[:, some]
-        found[some] = _along_contours(*parts, tolerance)
+    with np.errstate(divide="ignore", over="ignore"):
+        for first in range(0, count, step):
+            some = slice(first, first + step)
+            parts = shapes[..., some], screens[..., some], facing[:, some], normal[:, some]
+            found[some] = _along_contours(*parts, tolerance)
+    return found
+
+
+def form_factors_within(
+    shapes: np.ndarray, windows: np.ndarray, facing: np.ndarray, normal: np.ndarray, tolerance: float = 0.0
+) -> np.ndarray:
+    """Form factors from points to what they see of polygons through windows.
+
+    Parameters
+    ----------
+    shapes : (3, v, n) float
+        As of `form_factors`.
+    windows : (3, w, n) float
+        Convex polygons relative to the points, padded likewise.
+    facing : (n,) float
+        Positive where a window's right-hand normal looks at the point, negative where away.
+    normal, tolerance
+        As of `form_factors`.
+
+    Returns
+    -------
+    (n,) float
+    """
+    count = shapes.shape[2]
+    step = max(16, _VALUES // (shapes.shape[1] * windows.shape[1]))
+    found = np.empty(count)
+    normal = np.broadcast_to(normal.reshape(3, -1), (3, count))
+    with np.errstate(divide="ignore", over="ignore"):
+        for first in range(0, count, step):
+            some = slice(first, first + step)
+            edges = _Edges.of(shapes[..., some], windows[None, ..., some], facing[None, some], tolerance)
+            found[some] = edges.along_what_both_share(normal[:, some])
     return found
 
 
@@ -70,65 +105,131 @@ def whole_form_factors(shapes: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return np.divide(angle, length, out=angle, where=length > 0).sum(axis=0) / (2 * np.pi)
 
 
-def _along_contours(shapes, screens, facing, normal, tolerance: float) -> np.ndarray:
-    k, _, w, n = screens.shape
-    v = shapes.shape[1]
-    start = np.concatenate([shapes, screens.transpose(1, 0, 2, 3).reshape(3, k * w, n)], axis=1)
-    distance = np.maximum(np.sqrt(_dot(start, start)), _TINY)
-    start /= distance
-    on_edge = np.clip(tolerance / distance.min(axis=0), _ON_EDGE, _MOST_ON_EDGE)
-    after = following(start[:, v:].reshape(3, k, w, n), 2).reshape(3, k * w, n)
-    end = np.concatenate([following(start[:, :v]), after], axis=1)
-    pole = _cross(end, start)  # of polygons that face the point it looks inwards
-    pole[:, v:] *= np.repeat(np.where(facing < 0, -1.0, 1.0), w, axis=0)
-    length = np.sqrt(_dot(pole, pole))
-    edge = length > _NO_EDGE
-    pole *= edge
+@dataclass(frozen=True, eq=False)
+class _Edges:
+    """Edges of polygons, and after them those of screens, as seen from points.
 
-    def heights(planes: slice, corners: slice) -> np.ndarray:
-        """(p, c, n): of corners above the planes of edges; nearly nought where there is no edge."""
+    Attributes
+    ----------
+    corners, screens : int
+        Of each polygon, and how many screens.
+    start, end : (3, c, n) float, unit
+    pole : (3, c, n) float
+        Of the planes through point and edge, inwards; nought where there is no edge.
+    length : (c, n) float
+        Of ``pole``.
+    edge : (c, n) bool
+    on_edge : (n,) float
+        Height up to which corners lie on an edge, times its length.
+    """
+
+    corners: int
+    screens: int
+    start: np.ndarray
+    end: np.ndarray
+    pole: np.ndarray
+    length: np.ndarray
+    edge: np.ndarray
+    on_edge: np.ndarray
+
+    @classmethod
+    def of(cls, shapes, screens, facing, tolerance: float) -> _Edges:
+        """Those of shapes ``(3, v, n)`` and of screens ``(k, 3, w, n)``."""
+        k, _, w, n = screens.shape
+        v = shapes.shape[1]
+        start = np.concatenate([shapes, screens.transpose(1, 0, 2, 3).reshape(3, k * w, n)], axis=1)
+        distance = np.maximum(np.sqrt(_dot(start, start)), _TINY)
+        start /= distance
+        on_edge = np.clip(tolerance / distance.min(axis=0), _ON_EDGE, _MOST_ON_EDGE)
+        after = following(start[:, v:].reshape(3, k, w, n), 2).reshape(3, k * w, n)
+        end = np.concatenate([following(start[:, :v]), after], axis=1)
+        pole = _cross(end, start)  # of polygons that face the point it looks inwards
+        pole[:, v:] *= np.repeat(np.where(facing < 0, -1.0, 1.0), w, axis=0)
+        length = np.sqrt(_dot(pole, pole))
+        edge = length > _NO_EDGE
+        pole *= edge
+        return cls(v, k, start, end, pole, length, edge, on_edge)
+
+    def heights(self, planes: slice, corners: slice) -> tuple[np.ndarray, np.ndarray]:
+        """(p, c, n) twice: of edges' beginnings and ends above the planes of others; tiny where there is no edge."""
+        pole, start = self.pole, self.start
         out = pole[0, planes, None] * start[0, None, corners]
         out += pole[1, planes, None] * start[1, None, corners]
         out += pole[2, planes, None] * start[2, None, corners]
         out += _TINY
-        return out
+        if corners.stop <= self.corners:
+            return out, following(out)
+        width = (self.start.shape[1] - self.corners) // self.screens
+        return out, following(out.reshape(len(out), -1, width, out.shape[2]), 2).reshape(out.shape)
 
-    own, others = slice(0, v), slice(v, v + k * w)
+    def within(self, planes: slice, corners: slice, borders: str) -> np.ndarray:
+        """(2, c, n): where edges enter and leave what other edges bound, as shares of their lengths.
 
-    def following_of_screens(height: np.ndarray) -> np.ndarray:
-        return following(height.reshape(len(height), -1, w, n), 2).reshape(height.shape)
-
-    def uncovered(mine: slice, some: slice, height: np.ndarray, after: np.ndarray) -> np.ndarray | None:
-        """Edges that lie on a screen's and count as not within it.
-
-        Where two lie on each other with the same inner side, one counts: the later screen's, never the polygon's.
+        ``borders`` tells whether an edge that lies on one of these counts as within: "never"; "alike", where the inner
+        sides are the same; or "later", where besides the other belongs to a later screen, so that one of two counts.
         """
-        lies = _lying(height, after, edge[mine], on_edge)
-        if lies is not None:
+        first, last = self.heights(planes, corners)
+        lies = _lying(first, last, self.edge[planes], self.on_edge)
+        if lies is not None and borders != "never":
             plane, other, pair = np.nonzero(lies)
-            alike = (pole[:, mine.start + plane, pair] * pole[:, some.start + other, pair]).sum(axis=0) > 0
-            covered = alike & (some.start + other < mine.start)
-            lies[plane[covered], other[covered], pair[covered]] = False
-        return lies
+            poles = self.pole[:, planes.start + plane, pair], self.pole[:, corners.start + other, pair]
+            counts = (poles[0] * poles[1]).sum(axis=0) > 0
+            if borders == "later":
+                counts &= corners.start + other < planes.start
+            lies[plane[counts], other[counts], pair[counts]] = False
+        return _between(first, last, lies)
 
+    def along_what_both_share(self, normal) -> np.ndarray:
+        """(n,) float: Lambert's sum along the contour of what lies within the polygon and within the one window."""
+        own, others = slice(0, self.corners), slice(self.corners, self.start.shape[1])
+        kept = np.concatenate([self.within(others, own, "alike"), self.within(own, others, "never")], axis=1)
+        return self.sum_of_gaps(kept[0], kept[1], np.zeros((2, 0)), normal, len(self.length))
+
+    def sum_of_gaps(self, low, high, covers, normal, forwards: int) -> np.ndarray:
+        """(n,): Lambert's sum over what covers ``(2, k, c, n)`` leave of edges from ``low`` to ``high``.
+
+        The first so many edges are run along ``forwards``, the others backwards.
+        """
+        count = low.shape[1]
+        begin, finish = covers
+        if len(begin) > 1:
+            begin, finish = _ordered(begin, finish)
+        along = normal[0] * self.pole[0] + normal[1] * self.pole[1] + normal[2] * self.pole[2]
+        along /= np.maximum(self.length, _TINY)
+        along[forwards:] *= -1.0
+        cosine = _dot(self.start, self.end).ravel()
+        along, length = along.ravel(), self.length.ravel()
+        total, reached = np.zeros(count), low
+        for j in range(len(begin) + 1):
+            until = high if j == len(begin) else np.minimum(begin[j], high)
+            some = np.flatnonzero(until > reached)
+            a, b = reached.ravel().take(some), until.ravel().take(some)
+            aside = cosine.take(some) - 1.0
+            # between points of the chord from one unit vector to the next
+            angle = np.arctan2((b - a) * length.take(some), 1.0 + (a + b - 2.0 * a * b) * aside)
+            total += np.bincount(some % count, weights=angle * along.take(some), minlength=count)
+            if j < len(begin):
+                reached = np.maximum(reached, finish[j])
+        return total / (2 * np.pi)
+
+
+def _along_contours(shapes, screens, facing, normal, tolerance: float) -> np.ndarray:
+    k, _, w, n = screens.shape
+    v = shapes.shape[1]
+    edges = _Edges.of(shapes, screens, facing, tolerance)
+    own, others = slice(0, v), slice(v, v + k * w)
     # of the screens' edges what lies within the polygon, borders not included
-    height = heights(own, others)
-    after = following_of_screens(height)
-    low, high = _between(height, after, _lying(height, after, edge[own], on_edge))
-    low, high = np.concatenate([np.zeros((v, n)), low]), np.concatenate([np.ones((v, n)), high])
+    low, high = np.empty((2, v + k * w, n))
+    low[own], high[own] = 0.0, 1.0
+    low[others], high[others] = edges.within(own, others, "never")
     # of all edges what each screen covers
     covers = np.full((2, k, v + k * w, n), 2.0)
     for j in range(k):
         mine = slice(v + j * w, v + (j + 1) * w)
-        height = heights(mine, own)
-        after = following(height)
-        covers[:, j, own] = _between(height, after, uncovered(mine, own, height, after))
-        for some in (slice(v, mine.start), slice(mine.stop, v + k * w)):
+        for some in (own, slice(v, mine.start), slice(mine.stop, v + k * w)):
             if some.stop > some.start:
-                height = heights(mine, some)
-                after = following_of_screens(height)
-                covers[:, j, some] = _between(height, after, uncovered(mine, some, height, after))
-    return _sum_of_gaps(low, high, covers[0], covers[1], start, end, pole, length, v, normal)
+                covers[:, j, some] = edges.within(mine, some, "later")
+    return edges.sum_of_gaps(low, high, covers, normal, v)
 
 
 def _lying(first, last, edge, on_edge) -> np.ndarray | None:
@@ -151,8 +252,7 @@ def _between(first, last, outside) -> tuple[np.ndarray, np.ndarray]:
     that lies in such a plane counts as not within.
     """
     change = first - last
-    with np.errstate(divide="ignore", over="ignore"):
-        cut = np.divide(first, change, out=first)
+    cut = np.divide(first, change, out=first)
     rising = change < 0
     begin = np.where(rising, cut, 0.0).max(axis=0, initial=0.0)
     np.copyto(cut, 1.0, where=rising)
@@ -160,30 +260,6 @@ def _between(first, last, outside) -> tuple[np.ndarray, np.ndarray]:
     if outside is not None:
         finish[outside.any(axis=0)] = -1.0
     return begin, np.maximum(finish, begin, out=finish)
-
-
-def _sum_of_gaps(low, high, begin, finish, start, end, pole, length, corners: int, normal) -> np.ndarray:
-    """(n,): Lambert's sum over what covers ``(k, c, n)`` leave of edges from ``low`` to ``high``."""
-    count = low.shape[1]
-    if len(begin) > 1:
-        begin, finish = _ordered(begin, finish)
-    along = normal[0] * pole[0] + normal[1] * pole[1] + normal[2] * pole[2]
-    along /= np.maximum(length, _TINY)
-    along[corners:] *= -1.0
-    cosine = _dot(start, end).ravel()
-    along, length = along.ravel(), length.ravel()
-    total, reached = np.zeros(count), low
-    for j in range(len(begin) + 1):
-        until = high if j == len(begin) else np.minimum(begin[j], high)
-        some = np.flatnonzero(until > reached)
-        a, b = reached.ravel().take(some), until.ravel().take(some)
-        aside = cosine.take(some) - 1.0
-        # between points of the chord from one unit vector to the next
-        angle = np.arctan2((b - a) * length.take(some), 1.0 + (a + b - 2.0 * a * b) * aside)
-        total += np.bincount(some % count, weights=angle * along.take(some), minlength=count)
-        if j < len(begin):
-            reached = np.maximum(reached, finish[j])
-    return total / (2 * np.pi)
 
 
 def _ordered(begin: np.ndarray, finish: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
