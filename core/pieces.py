@@ -59,8 +59,8 @@ class Windows:
         """Polygons ``(r, w, 3)``."""
         planes, edges, facing = edge_cones(windows)
         edges &= (facing != 0)[:, None]
-        parts = (np.ascontiguousarray(part.transpose(2, 1, 0)) for part in (windows, planes))
-        return cls(*parts, np.ascontiguousarray(edges.T), -facing)
+        corners, planes = (np.ascontiguousarray(part.transpose(2, 1, 0)) for part in (windows, planes))
+        return cls(corners, planes, np.ascontiguousarray(edges.T), -facing)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,9 +137,9 @@ def tightened(shapes) -> tuple[np.ndarray, np.ndarray]:
     step = np.abs(shapes - shapes[:, np.arange(-1, shapes.shape[1] - 1)]).max(axis=2)
     apart = step > _SAME * np.ptp(shapes, axis=1).max(axis=1)[:, None]
     counts = np.maximum(apart.sum(axis=1), 1)
-    width = int(counts.max())
-    if width == shapes.shape[1]:
+    if apart.all():
         return shapes, counts
+    width = int(counts.max())
     order = np.argsort(~apart, axis=1, kind="stable")
     place = np.minimum(np.arange(width), counts[:, None] - 1)
     rows = np.arange(len(shapes))[:, None]

@@ -74,7 +74,10 @@ class Overlaps:
         outer = outer - centre[place][:, None]
         at = place[outer_of]
         one, other = outer[outer_of], inner[inner_of] - centre[at][:, None]
-        low, high = np.minimum(other.min(axis=1), eye.min(axis=1)[at]), np.maximum(other.max(axis=1), eye.max(axis=1)[at])
+        low, high = (
+            np.minimum(other.min(axis=1), eye.min(axis=1)[at]),
+            np.maximum(other.max(axis=1), eye.max(axis=1)[at]),
+        )
         extent = np.maximum(np.maximum(high, -low).max(axis=1), 1e-300)
         rounding = (_SLIVER * extent)[:, None]
         apart = (one.min(axis=1) > high + rounding) | (one.max(axis=1) < low - rounding)

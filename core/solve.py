@@ -291,7 +291,8 @@ def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], li
             alike.setdefault((patch.outline, patch.front, patch.illuminance), []).append(polygon)
     for (outline, _, illuminance), pieces in alike.items():
         exitance = outlines.materials[outline].diffuse_reflectance * illuminance
-        sunny += [Source(polygon, exitance) for polygon in polygons.merged(pieces)]
+        whole = (polygon for polygon in polygons.merged(pieces) if polygons.newell_normal(polygon).any())
+        sunny += [Source(polygon, exitance) for polygon in whole]
     return emitters, sunny
 
 

@@ -14,17 +14,16 @@ from functools import cached_property
 import numpy as np
 
 from . import polygons
-from .blockers import Blockers, above, between, frame, light_past
+from .blockers import Blockers, above, between, frame
 from .bright import FAINT, Bright, Source
 from .materials import Material
 from .outlines import Outlines
 from .pieces import SeenShapes, Windows, tightened
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
-from .standing import Places, Standing
+from .standing import Places, Standing, light_past
 from .tracing import ChainLimits
 from .unhidden import whole_form_factors
-
 
 _PAIRS = 100_000
 """Sources times outlines, times receivers' planes, that are looked at together."""

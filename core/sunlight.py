@@ -13,6 +13,7 @@ import numpy as np
 
 from . import polygons
 from .outlines import Outlines
+from .pieces import tightened
 from .projection import reflect
 from .sun_patches import SunPatch, Triangles, light_elements
 from .tracing import DEEPEST_CHAIN
@@ -192,9 +193,11 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
                 if not len(pieces[0]):
                     break
             shown = wide(pieces[0], tolerance)
+            shapes, corners = tightened(pieces[0][shown])
             lux = beam.normal_illuminance * abs(float(cosine[k]))
-            for polygon, factor in zip(pieces[0][shown], pieces[1][shown].tolist(), strict=True):
-                found.append(SunPatch(int(present[k]), bool(cosine[k] < 0), polygon, lux * factor, beam.order))
+            for polygon, count, factor in zip(shapes, corners.tolist(), pieces[1][shown].tolist(), strict=True):
+                lit_side = int(present[k]), bool(cosine[k] < 0)
+                found.append(SunPatch(*lit_side, polygon[:count], lux * factor, beam.order))
     return found
 
 

@@ -162,8 +162,8 @@ class _Edges:
         width = (self.start.shape[1] - self.corners) // self.screens
         return out, following(out.reshape(len(out), -1, width, out.shape[2]), 2).reshape(out.shape)
 
-    def within(self, planes: slice, corners: slice, borders: str) -> np.ndarray:
-        """(2, c, n): where edges enter and leave what other edges bound, as shares of their lengths.
+    def within(self, planes: slice, corners: slice, borders: str) -> tuple[np.ndarray, np.ndarray]:
+        """(c, n) twice: where edges enter and leave what other edges bound, as shares of their lengths.
 
         ``borders`` tells whether an edge that lies on one of these counts as within: "never"; "alike", where the inner
         sides are the same; or "later", where besides the other belongs to a later screen, so that one of two counts.

@@ -118,6 +118,33 @@ def test_nothing_in_the_way():
     np.testing.assert_allclose(past([box(0, 0, 1, 0.3, 0.4)[0]], padded), past([box(0, 0, 1, 0.3, 0.4)[0]]), rtol=1e-12)
 
 
+def within(window, shape=LAMP, eyes=EYES, normal=UP):
+    """By the room under test: what of a shape is seen through a window."""
+    relative = [np.ascontiguousarray((one[None] - eyes[:, None]).transpose(2, 1, 0)) for one in (shape, window)]
+    return unhidden.form_factors_within(*relative, blockers_of([window]).facing(eyes, None, 0.0)[0], normal)
+
+
+@settings(max_examples=60, deadline=None)
+@given(SCREENS)
+def test_what_a_window_shows_is_what_a_screen_of_its_shape_hides(given):
+    window = ring(*given)
+    expected = cut_away([]) - cut_away([window])
+    np.testing.assert_allclose(within(window), expected, atol=1e-10)
+    padded = np.concatenate([window, window[-1:], window[-1:]])
+    np.testing.assert_allclose(within(padded), expected, atol=1e-10)
+
+
+def test_windows_with_edges_on_the_lamps_own():
+    """As where a mirror ends at the wall that the Sun shines on."""
+    whole, beside = cut_away([]), np.concatenate([LAMP[:2], LAMP[[1, 0]] - [[0.5, 0, 0]]])
+    np.testing.assert_allclose(within(LAMP), whole, rtol=1e-12)
+    np.testing.assert_allclose(within(LAMP[::-1]), whole, rtol=1e-12)
+    np.testing.assert_allclose(within(LAMP[[0, 1, 2]]), whole - cut_away([LAMP[[0, 1, 2]]]), atol=1e-10)
+    np.testing.assert_allclose(within(beside), 0, atol=1e-12)
+    far = LAMP * [1, 1, 0.5] + [9.0, 0, 0]
+    np.testing.assert_allclose(within(far), 0, atol=1e-12)
+
+
 def overlaps(blockers, lamp, facing):
     """(k, r) bool twice: what hides and what crosses the lamp, those told apart beforehand left out."""
     standing = Standing.of(blockers, lamp[None], np.zeros(1, int), EYES, 1e-12)
