@@ -242,9 +242,13 @@ class Fracture:
 
     def side_means(self, values) -> np.ndarray:
         """Area-weighted means over faces' fronts and backs ``(sides, ...)`` of values per element ``(e, ...)``."""
-        area = np.bincount(self.element_side, weights=self.element_areas, minlength=self.sides)
         mean = np.bincount(self.element_side, weights=self.element_areas * values, minlength=self.sides)
-        return mean / area
+        return mean / self._side_areas
+
+    @cached_property
+    def _side_areas(self) -> np.ndarray:
+        """(sides,) float [m²]."""
+        return np.bincount(self.element_side, weights=self.element_areas, minlength=self.sides)
 
 
 def fracture(

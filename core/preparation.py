@@ -322,7 +322,7 @@ def bytes_held(geometry: Geometry, nodes: int) -> float:
     """What a transfer with so many nodes holds, about."""
     columns, patches = geometry.targets.columns, geometry.targets.patches.count
     specular = 2 if geometry.outlines.any_specular else 1
-    return 4.0 * nodes * (patches + specular * columns) + 8.0 * patches**2
+    return 4.0 * nodes * (patches + 4 / 3 * specular * columns) + 8.0 * patches**2  # see `Transfer.seen_sky`
 
 
 def _check_memory(geometry: Geometry, nodes: int, memory: float | None) -> None:

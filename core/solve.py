@@ -117,10 +117,9 @@ def solve_light(
         recorder.skip("sky", "nothing sees the sky or the ground")
     elif sky.any():
         with recorder.stage("sky", 0.0):
-            components["sky_direct"] = transfer.on_elements(np.pi * product(transfer.sky_direct, sky, exact))
-            components["sky_specular"] = _of_rows(
-                transfer, transfer.specular_rows, transfer.sky_specular, np.pi * sky, exact
-            )
+            direct, specular = (np.pi * seen.times(sky, exact) for seen in transfer.seen_sky)
+            components["sky_direct"] = transfer.on_elements(direct)
+            components["sky_specular"] = _of_rows(transfer, transfer.specular_rows, specular)
     else:
         recorder.skip("sky", "no sky and no ground light")
 
@@ -336,7 +335,8 @@ def _gather_bright(
         return (found + found.mean())[:, None]
 
     nodes = settled(transfer.lattice, geometry.fracture, evaluate, times * transfer.times)
-    return nodes.on_elements(found) + _of_rows(transfer, transfer.deep_rows, transfer.deep_factors, deep, exact)
+    by_many_mirrors = product(transfer.deep_factors, deep, exact)
+    return nodes.on_elements(found) + _of_rows(transfer, transfer.deep_rows, by_many_mirrors)
 
 
 def _handfuls(chunks: list[np.ndarray], most: int) -> list[list[np.ndarray]]:
@@ -352,12 +352,12 @@ def _handfuls(chunks: list[np.ndarray], most: int) -> list[list[np.ndarray]]:
     return handfuls
 
 
-def _of_rows(transfer: Transfer, rows: np.ndarray, factors: np.ndarray, light: np.ndarray, exact: bool) -> np.ndarray:
-    """(e,) float: illuminance of the elements by factors ``(k, c)`` of some nodes alone."""
+def _of_rows(transfer: Transfer, rows: np.ndarray, illuminance: np.ndarray) -> np.ndarray:
+    """(e,) float: illuminance of the elements by that of some nodes ``(k,)`` alone."""
     if not len(rows):
         return np.zeros(len(transfer.geometry.element_points))
     values = np.zeros(len(transfer.nodes.points))
-    values[rows] = product(factors, light, exact)
+    values[rows] = illuminance
     return transfer.on_elements(values)
 
 

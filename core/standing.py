@@ -270,6 +270,9 @@ def light_past(
         return
     clear = np.array([outlines.materials[o].is_transparent for o in blockers.outline], bool)[overlaps.outer]
     hides, crosses = overlaps.seen(points, facing)
+    if not (hides.any() or crosses.any()):
+        whole(seen)
+        return
     crosses[clear] |= hides[clear]
     # what crosses follows shape after shape, for each receiver
     shapes = len(standing.shapes)

@@ -231,17 +231,16 @@ def _shadow(outlines: Outlines, pieces, blocker, walls, outline: int, travel):
     for normal, offset in zip(normals, offsets, strict=True):
         if np.isinf(offset) or (inside @ normal - offset).min() >= 0:
             continue
-        outside = polygons.clip(inside, -normal, -offset)
-        keep = wide(outside, tolerance)
-        left.append((outside[keep], factors[keep]))
+        left.append((polygons.clip(inside, -normal, -offset), factors))
         inside = polygons.clip(inside, normal, offset)
     material = outlines.materials[outline]
     if material.is_transparent:
         through = float(material.transmittance_at(outlines.normals[outline] @ travel))
-        lit = wide(inside, tolerance)
-        left.append((inside[lit], factors[lit] * through))
-    left = [part for part in left if len(part[1])] or left[:1]
-    return polygons.joined([part[0] for part in left]), np.concatenate([part[1] for part in left])
+        left.append((inside, factors * through))
+    parts = polygons.joined([part[0] for part in left])
+    keep = wide(parts, tolerance)
+    keep[: len(left[0][1])] = True
+    return parts[keep], np.concatenate([part[1] for part in left])[keep]
 
 
 def wide(shapes, tolerance: float) -> np.ndarray:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .arrays import Banded
 from .blockers import frame
 from .convex import ConvexRoom
 from .daylight import Daylight
@@ -145,7 +146,12 @@ class Transfer:
     @cached_property
     def sees_out(self) -> bool:
         """Whether any receiver sees anything of the sky or the ground, straight or by mirrors."""
-        return bool(self.sky_direct.any() or self.sky_specular.any())
+        return any(seen.any() for seen in self.seen_sky)
+
+    @cached_property
+    def seen_sky(self) -> tuple[Banded, Banded]:
+        """``sky_direct`` and ``sky_specular`` as they are multiplied with a sky, of which most receivers see little."""
+        return Banded.of(self.sky_direct), Banded.of(self.sky_specular)
 
     def on_elements(self, values: np.ndarray) -> np.ndarray:
         """Values on the elements ``(e,)`` from values at the nodes ``(m,)``."""
