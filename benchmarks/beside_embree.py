@@ -10,7 +10,7 @@ from __future__ import annotations
 import importlib.util
 import multiprocessing
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import apart
 import numpy as np
@@ -21,10 +21,16 @@ from luzespecular import form_factors
 from luzespecular.gather import gather
 from luzespecular.geometry import sight_of
 from luzespecular.parallel import chunks_of_receivers, run_parallel
+from luzespecular.projection import Beams, HalfSpace, Obstacles, obstacles_within
 from luzespecular.specular import GroupSight
+from luzespecular.views import View
+from luzespecular.visibility import look
 
 OFF_THE_PLANE = 1e-4
 """Rays start so far before their receiver's plane, which in single precision they would meet otherwise [m]."""
+
+NO_WIDTH = 1e-6 / 1.01
+"""What the solver adds to how far beams reach, so that nothing slips by: taken off again [rad]."""
 
 
 def available() -> bool:
@@ -63,6 +69,36 @@ def groups_of(transfer: luz.Transfer) -> list[Group]:
             sights[sheet] = sight_of(geometry, transfer.limits, normal, float(normal @ nodes.points[first]))
         groups.append(Group(nodes.points[chunk], sights[sheet]))
     return groups
+
+
+@dataclass(frozen=True)
+class Rays:
+    """A group's parcels as single rays through their middles, and what these may meet."""
+
+    group: Group
+    beams: Beams
+    obstacles: Obstacles
+
+    @classmethod
+    def of(cls, group: Group) -> Rays:
+        """Beams without width: no edge crosses one, but for what rounding does."""
+        sight, outlines = group.sight, group.sight.outlines
+        thin = replace(sight.hemisphere, reach=np.full(len(sight.hemisphere.reach), -NO_WIDTH))
+        horizon = HalfSpace(sight.hemisphere.normal, sight.offset)
+        obstacles = obstacles_within(
+            outlines.vertices, outlines.normals, outlines.offsets, [horizon], outlines.tolerance
+        )
+        return cls(group, Beams.of(thin), obstacles)
+
+    def look(self) -> View:
+        """The nearest outline along each ray."""
+        tolerance, normal = self.group.sight.outlines.tolerance, self.beams.hemisphere.normal
+        return look(self.group.points, normal, self.beams, self.obstacles, tolerance)
+
+
+def look_along_rays(rays: list[Rays], threads: int) -> None:
+    """What Embree is asked: the nearest surface along the middle of each parcel."""
+    run_parallel(lambda some, _: some.look(), rays, threads, _unheard)
 
 
 def look_straight(groups: list[Group], threads: int) -> None:
@@ -179,11 +215,25 @@ def agreement(transfer: luz.Transfer, groups: list[Group]) -> float:
     return same / count
 
 
+def agreement_along_rays(transfer: luz.Transfer, rays: list[Rays]) -> float:
+    """Share of all rays which Embree and the solver see end on the same outline, or on none."""
+    corners, owner = triangles(transfer.geometry.outlines.vertices)
+    scene, same, count = _scene(corners), 0, 0
+    for some in rays:
+        seen = np.asarray(some.look().seen)
+        hit = np.asarray(scene.run(*rays_of(some.group))).reshape(seen.shape)
+        ours = np.where(seen >= 0, some.obstacles.outlines[seen], seen)
+        same, count = same + int((np.where(hit >= 0, owner[hit], -1) == ours).sum()), count + seen.size
+    return same / count
+
+
 def compare(bands: int, max_area: float, threads: int, repeats: int, most_seconds: float) -> dict:
     """Directions per second of Embree and of the solver in the light-shelf room, in turn."""
     transfer = luz.prepare(rooms.light_shelf_room().scene("S1"), bands=bands, max_area=max_area, threads=threads)
     groups = groups_of(transfer)
+    rays = [Rays.of(group) for group in groups]
     works = {
+        "nearest surface alone": lambda: look_along_rays(rays, threads),
         "visibility": lambda: look_straight(groups, threads),
         "visibility, mirrors as well": lambda: look_all(groups, threads),
         "form factors, mirrors as well": lambda: gather_all(groups, transfer, threads),
@@ -211,7 +261,9 @@ def compare(bands: int, max_area: float, threads: int, repeats: int, most_second
         ],
     }
     if embree is not None:
-        out["agree"] = agreement(transfer, groups[:: max(1, len(groups) // 8)])
+        some = slice(None, None, max(1, len(groups) // 8))
+        out["agree"] = agreement(transfer, groups[some])
+        out["agree_rays"] = agreement_along_rays(transfer, rays[some])
     return out
 
 

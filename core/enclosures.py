@@ -48,7 +48,7 @@ class Enclosures:
 
         Parameters
         ----------
-        factors : (p, p) float
+        factors : (p, p) float32
             Form factors from patch to patch.
         areas : (p,) float
             Of the patches [m²].
@@ -57,7 +57,7 @@ class Enclosures:
         first : (e,) int
             A node of each element.
         """
-        of_patches = enclosed(areas[:, None] * factors)
+        of_patches = enclosed(areas[:, None].astype(factors.dtype) * factors)
         count = int(of_patches.max(initial=0)) + 1
         of_nodes = np.zeros(len(form_factors), np.int64)
         if count > 1:
@@ -82,14 +82,13 @@ def enclosed(flux: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     flux : (p, p) float
-        What each patch gives each other, in any measure of light.
+        What each patch gives each other, in any measure of light. Its diagonal is other for a while.
     """
-    flux = np.array(flux, float)
     of = np.arange(len(flux))
     used = np.ones(len(flux), bool)
     while len(flux) > 1:
         own = flux.diagonal().copy()
-        sent, got = flux.sum(axis=1), flux.sum(axis=0)
+        sent, got = flux.sum(axis=1, dtype=float), flux.sum(axis=0, dtype=float)
         if len(of) == len(flux):
             used = (sent > 0) | (got > 0)
         np.fill_diagonal(flux, -1.0)

@@ -253,10 +253,10 @@ class Light:
 
 
 def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> np.ndarray:
-    """(p, k) float: means of the elements' form factors, from the nodes' ``(m, k)``, over each patch."""
+    """(p, k): means of the elements' form factors, from the nodes' ``(m, k)``, over each patch; as precise as these."""
     patch, area = geometry.targets.patches.of_element, geometry.fracture.element_areas
     count = geometry.targets.patches.count
-    means = np.zeros((count, form_factors.shape[1]))
+    means = np.zeros((count, form_factors.shape[1]), form_factors.dtype)
     if not count:
         return means
     element = nodes.weights.rows

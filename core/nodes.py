@@ -20,17 +20,20 @@ from .interpolation import lagrange
 from .layout import Layout
 from .weights import Weights
 
-_DENSE_SHARE = 0.7
-"""Growth of the lattice's spacing with the distance from the border."""
+_FIRST, _GROWTH = 0.5, 0.6
+"""Spaces between the lattice's lines, in cells: the first, and how fast they grow with the distance from the border."""
 
-DOUBT = 0.02
+DOUBT = 0.025
 """Surprise of a node (`Nodes.doubt`), relative to all light, from which the elements around get their own receivers."""
 
 _CURVE = 0.1
 """Error of one receiver for an element, over the difference between the halves of its cell."""
 
-_SPACES = 8
-"""Widest spaces between lines of nodes, in a stretch."""
+_SPACES, _FEWEST_CELLS = 10, 2
+"""Widest spaces between lines of nodes: so many in a stretch, but of so many cells at least."""
+
+_HALF = 0.65
+"""Share of a space that may be left open before the middle."""
 
 _BESIDE = 0.12
 """Distance from the end of a stretch to its first line of nodes, in cells: light changes fast beside other planes."""
@@ -441,12 +444,12 @@ def _lines(count: int, spacing: int = 1) -> np.ndarray:
         return spacing * _lines(count // spacing)
     if count == 1:
         return np.array([_BESIDE, 1 - _BESIDE])
-    most = max(3, count // _SPACES)
-    half, middle = [0], (count - 1) / 2
-    while half[-1] + 1 <= middle:
-        half.append(min(half[-1] + min(most, 1 + int(_DENSE_SHARE * half[-1])), int(middle)))
-    lines = np.array([_BESIDE, *(0.5 + np.array(half))])
-    return np.unique(np.concatenate([lines, count - lines]))
+    middle, widest = 0.5 * count, max(_FEWEST_CELLS, count / _SPACES)
+    half = [_BESIDE]
+    while (left := middle - half[-1]) > _HALF * (space := min(widest, _FIRST + _GROWTH * half[-1])):
+        # never in the very middle, where other surfaces often lie in line
+        half.append(half[-1] + min(space, 2 / 3 * left))
+    return np.array(half + [count - place for place in half[::-1]])
 
 
 def _stencils(stretches: list, cells: np.ndarray, centre: float, places: np.ndarray, order: int):

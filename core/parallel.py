@@ -39,15 +39,24 @@ def chunks_of_receivers(points, sheet, planes: Planes, most: int) -> list[np.nda
     chunks = []
     for a, b in itertools.pairwise(bounds):
         members = order[a:b]
-        if len(members) > most:
+        parts = math.ceil(len(members) / most)
+        if parts > 1:
             place = points[members] @ planes.sheet_axes[sheet[members[0]] % fronts].T
-            extent = np.maximum(np.ptp(place, axis=0), 1e-12)
-            blocks = len(members) / most
-            cell = math.sqrt(extent.prod() / blocks) if extent.min() > 1e-9 * extent.max() else extent.max() / blocks
-            block = np.floor((place - place.min(axis=0)) / cell)
-            members = members[np.lexsort((place[:, 1], block[:, 1], block[:, 0]))]
-        chunks += [members[k : k + most] for k in range(0, len(members), most)]
+            chunks += [members[some] for some in _halved(place, np.arange(len(members)), parts)]
+        elif parts == 1:
+            chunks.append(members)
     return chunks
+
+
+def _halved(place: np.ndarray, some: np.ndarray, parts: int) -> list[np.ndarray]:
+    """Some of the places ``(k, 2)`` in so many parts, as compact and as equal as may be: halves of halves."""
+    if parts == 1:
+        return [some]
+    along = int(np.argmax(np.ptp(place[some], axis=0)))
+    some = some[np.argsort(place[some, along], kind="stable")]
+    first = parts // 2
+    end = len(some) * first // parts
+    return _halved(place, some[:end], first) + _halved(place, some[end:], parts - first)
 
 
 def run_parallel(work: Callable, tasks: list, threads: int, report: Callable[[float], None]) -> None:

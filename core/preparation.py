@@ -275,7 +275,9 @@ def _prepared(
             patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         conservation = Conservation.of(geometry, nodes, gathered, enclosures)
         spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
-        exchange = Exchange(patch_factors.astype(np.float32), spread, conservation.missing, enclosures.of_patches)
+        exchange = Exchange(
+            patch_factors.astype(np.float32, copy=False), spread, conservation.missing, enclosures.of_patches
+        )
     sees_out = bool(gathered.sky_direct.any() or gathered.sky_specular.any())
     if reuse is not None:
         recorder.skip("reuse", f"{_difference(reuse, fingerprint)}; {kept} of {len(nodes.points)} receivers {what}")

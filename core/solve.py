@@ -28,7 +28,7 @@ from .transfer import Transfer
 EXACT_OUTLINES = 400
 """Scenes of more outlines gather luminous surfaces and sun patches by the globe, like all other light."""
 
-_OF_SUN_PATCHES = 0.25
+_OF_SUN_PATCHES = 0.4
 """How fine the receivers of their light alone are, which comes anew with every hour, over those of all light."""
 
 _CLOSED = 1e-3

@@ -83,9 +83,9 @@ def test_embree_meets_what_the_solver_sees(tmp_path):
     pytest.importorskip("embreex")
     state, page = run(tmp_path, "embree")
     found = state["embree"]
-    assert found["agree"] > 0.999
-    assert [row["what"] for row in found["rows"]][:2] == ["Embree", "visibility"]
-    assert found["rows"][0]["directions"] == found["rows"][1]["directions"] > 0
+    assert found["agree"] > 0.999 and found["agree_rays"] > 0.999
+    assert [row["what"] for row in found["rows"]][:3] == ["Embree", "nearest surface alone", "visibility"]
+    assert found["rows"][0]["directions"] == found["rows"][1]["directions"] == found["rows"][2]["directions"] > 0
     assert "times Embree's rate" in page
 
 

@@ -90,8 +90,10 @@ def test_lattices_are_dense_at_their_borders_and_wide_between():
     assert len(gaps) < 20 and lines[0] == pytest.approx(40 - lines[-1])
     assert 0.05 < lines[0] < 0.3, "light changes fast beside other planes"
     np.testing.assert_allclose(gaps, gaps[::-1])
-    assert gaps[0] < 0.5 and gaps[1] == pytest.approx(1) and gaps.max() >= 3
-    assert len(nodes.points) < 0.15 * len(geometry.fracture.elements)
+    assert gaps[0] < 0.6 and gaps[1] < 1 and gaps.max() >= 3
+    assert (np.diff(gaps[:5]) > 0.1).all(), "wider and wider"
+    assert np.abs(lines - 20).min() > 0.5, "none in the very middle, where other surfaces often lie in line"
+    assert len(nodes.points) < 0.12 * len(geometry.fracture.elements)
 
 
 @pytest.mark.parametrize("z", [0.4, 0.43])
@@ -218,10 +220,10 @@ def test_no_doubt_about_even_curves(light):
 @pytest.mark.parametrize("axis", [0, 2])
 def test_a_crease_is_doubted_there_alone(axis):
     where = 0.9 if axis == 0 else 0.52
-    doubt, points = doubt_about(lambda x, z: 1 + 2 * np.abs((x, None, z)[axis] - where))
+    doubt, points = doubt_about(lambda x, z: 1 + 2 * np.abs((x, None, z)[axis] - where), wall(2.0, 2.0))
     away = np.abs(points[:, axis] - where)
     assert (doubt[away < 0.5 * CELL] > DOUBT).all()
-    far = away > (8 if axis == 0 else 4) * CELL
+    far = away > 9 * CELL
     assert far.sum() > 20 and doubt[far].max() < 1e-9
 
 

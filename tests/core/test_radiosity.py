@@ -167,7 +167,7 @@ def test_a_white_box_with_an_opening_settles():
     """What enters by the opening leaves by it again: flux in equals flux out."""
     transfer = prepare_coarse(box(luz.Material(diffuse_reflectance=1.0), without=("ceiling",)))
     result = transfer.solve(UNIFORM, tolerance=1e-6)
-    assert result.balance.escaped == pytest.approx(result.balance.entering, rel=1e-4)
+    assert result.balance.escaped == pytest.approx(result.balance.entering, rel=2e-4)
     np.testing.assert_allclose(result.illuminance, np.pi * 1000, rtol=5e-3)  # in equilibrium with the sky
 
 
