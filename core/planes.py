@@ -17,6 +17,9 @@ from .scene import Scene
 _SAME_NORMAL = 1e-7
 _JOIN_AT_MOST = 4000
 
+_MOST_CORNERS = 32
+"""Outlines of more are parted: arrays of outlines are as wide as the one of most corners."""
+
 
 @dataclass(frozen=True, eq=False)
 class Planes:
@@ -104,8 +107,9 @@ def find_planes(scene: Scene) -> Planes:
             sheet_surface.append(number)
             sheet_normal.append(normal[representative])
     padded, given_counts = polygons.pad([p[:c] for p, c in given])
-    blocked, _ = polygons.pad(outlines)
-    outline_sheet = np.array(outline_of)
+    axes = _sheet_axes(np.array(sheet_normal), polygons.pad(outlines)[0], np.array(outline_of))
+    parts = [polygons.of_few_corners(outline, _MOST_CORNERS) for outline in outlines]
+    outline_sheet = np.repeat(outline_of, [len(some) for some in parts])
     return Planes(
         centre=centre,
         size=size,
@@ -116,8 +120,8 @@ def find_planes(scene: Scene) -> Planes:
         given_source=np.concatenate(sources),
         sheet_surface=np.array(sheet_surface),
         sheet_normal=np.array(sheet_normal),
-        sheet_axes=_sheet_axes(np.array(sheet_normal), blocked, outline_sheet),
-        outlines=blocked,
+        sheet_axes=axes,
+        outlines=polygons.pad([part for some in parts for part in some])[0],
         outline_sheet=outline_sheet,
         stands_for=np.arange(2 * len(sheet_surface)),
     )

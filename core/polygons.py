@@ -5,6 +5,9 @@ Batches of convex polygons travel as ``(m, v, 3)`` arrays padded by repeating th
 
 from __future__ import annotations
 
+import heapq
+import itertools
+
 import numpy as np
 
 
@@ -255,17 +258,19 @@ def triangulate(loop) -> np.ndarray:
         prev, here, nxt = p[np.roll(ids, 1)], p[ids], p[np.roll(ids, -1)]
         turn = _cross(here - prev, nxt - here)
         reflex = here[turn <= tiny]
-        ears = [k for k in range(len(ids)) if turn[k] > tiny]
-        # a corner exactly on an ear's outline blocks it only where no other ear is left
-        for margin in (-tiny, tiny, np.inf):
-            free = [k for k in ears if not _blocked(prev[k], here[k], nxt[k], reflex, margin)]
-            if free:
-                break
-        flat = int(np.argmin(np.abs(turn)))
-        if not free or abs(turn[flat]) <= tiny:
-            best = flat  # collinear or doubled
-        else:
-            best = max(free, key=lambda k: turn[k] / max(((nxt[k] - prev[k]) ** 2).sum(), 1e-300))
+        best = int(np.argmin(np.abs(turn)))
+        if abs(turn[best]) > tiny:  # not collinear or doubled
+            ears = np.flatnonzero(turn > tiny)
+            roundness = turn[ears] / np.maximum(((nxt[ears] - prev[ears]) ** 2).sum(axis=1), 1e-300)
+            ears = ears[np.argsort(-roundness, kind="stable")]
+            # a corner exactly on an ear's outline blocks it only where no other ear is left
+            free = (
+                int(k)
+                for margin in (-tiny, tiny, np.inf)
+                for k in ears
+                if not _blocked(prev[k], here[k], nxt[k], reflex, margin)
+            )
+            best = next(free, best)
         m = len(rest)
         triangles.append((rest[best - 1], rest[best], rest[(best + 1) % m]))
         del rest[best]
@@ -308,29 +313,53 @@ def convex_parts(loop, tolerance: float) -> list[np.ndarray]:
         p = apart
     if is_convex(p, tolerance):
         return [p]
-    parts = [list(t) for t in triangulate(p)]
-    merged = True
-    while merged:
-        merged = False
-        edges = {}
-        for k, part in enumerate(parts):
-            for i in range(len(part)):
-                edges[(part[i], part[(i + 1) % len(part)])] = (k, i)
-        for (a, b), (k, i) in edges.items():
-            if (b, a) not in edges:
+    parts: list[list[int] | None] = [list(t) for t in triangulate(p)]
+    owner = {edge: k for k, part in enumerate(parts) if part for edge in _edges(part)}
+    waiting = list(range(len(parts)))  # a heap: always the first that has not been tried with its neighbours
+    apart_for_good = set()
+    while waiting:
+        k = heapq.heappop(waiting)
+        part = parts[k]
+        for a, b in _edges(part) if part else ():
+            other = owner.get((b, a), k)
+            neighbour = parts[other]
+            if other == k or part is None or neighbour is None or (k, other) in apart_for_good:
                 continue
-            other, j = edges[(b, a)]
-            if other == k:
+            i, j = part.index(b), neighbour.index(a)
+            together = part[i:] + part[:i] + (neighbour[j + 1 :] + neighbour[: j + 1])[:-2]
+            if not is_convex(p[together], tolerance):
+                apart_for_good |= {(k, other), (other, k)}
                 continue
-            one, two = parts[k], parts[other]
-            joined = [one[(i + 1 + s) % len(one)] for s in range(len(one))] + [
-                two[(j + 2 + s) % len(two)] for s in range(len(two) - 2)
-            ]
-            if is_convex(p[joined], tolerance):
-                parts = [q for m, q in enumerate(parts) if m not in (k, other)] + [joined]
-                merged = True
-                break
-    return [simplify(p[part], tolerance) for part in parts]
+            parts[k] = parts[other] = None
+            around = {owner[(d, c)] for c, d in _edges(together) if (d, c) in owner}
+            owner.update(dict.fromkeys(_edges(together), len(parts)))
+            for again in (*around - {k, other}, len(parts)):
+                heapq.heappush(waiting, again)
+            parts.append(together)
+            break
+    return [simplify(p[part], tolerance) for part in parts if part]
+
+
+def of_few_corners(loop, most: int) -> list[np.ndarray]:
+    """A convex polygon ``(v, 3)``; where it has more than ``most`` corners, in sectors about its middle of no more."""
+    p = np.asarray(loop, float)
+    if len(p) <= most:
+        return [p]
+    middle = centroids(p[None])
+    from_middle, around = p - middle, np.concatenate([p, p[:1]])
+    after = np.roll(from_middle, -1, axis=0)
+    turned = np.arctan2(np.linalg.norm(cross(from_middle, after), axis=1), np.einsum("vc,vc->v", from_middle, after))
+    ends, turn = [0], 0.0
+    for k, angle in enumerate(turned.tolist()):
+        turn += angle
+        if k > ends[-1] and (k - ends[-1] >= most - 2 or turn > _HALF_ROUND):
+            ends.append(k)
+            turn = angle
+    return [np.concatenate([middle, around[a : b + 1]]) for a, b in itertools.pairwise([*ends, len(p)])]
+
+
+_HALF_ROUND = 0.95 * np.pi
+"""Sectors that turn less about their middle are convex."""
 
 
 def welded(corners, same: float) -> tuple[np.ndarray, np.ndarray]:

@@ -132,3 +132,14 @@ def test_tilted_meshes_join_too(width, height, turn, shift):
     planes = find_planes(scene)
     assert len(planes.outlines) == 1
     assert polygons.areas(planes.outlines)[0] == pytest.approx(width * height, rel=1e-9)
+
+
+def test_outlines_of_many_corners_are_parted_and_keep_their_sheet():
+    turn = 2 * np.pi * np.arange(100) / 100
+    scene = Scene()
+    scene.add("disc", np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1), BLACK)
+    scene.add("square", [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], BLACK)
+    planes = find_planes(scene)
+    assert planes.outlines.shape[1] <= 32
+    assert np.bincount(planes.outline_sheet).tolist() == [4, 1]
+    assert polygons.areas(planes.outlines).sum() == pytest.approx(50 * np.sin(2 * np.pi / 100) + 1)

@@ -361,3 +361,37 @@ def test_few_polygons_are_clipped_like_many(count, corners, seed, offset):
     left = clipped[polygons.areas(clipped) > 0]  # of the others one corner stays, wherever it is
     assert (left @ normal - offset).min(initial=0.0) > -1e-12
     np.testing.assert_allclose(polygons.widen(clipped, many.shape[1]), many[:count], atol=1e-12)
+
+
+@pytest.mark.parametrize(("count", "most", "parts"), [(5, 8, 1), (8, 8, 1), (9, 8, 3), (1000, 32, 34)])
+def test_polygons_of_many_corners_are_parted_into_sectors(count, most, parts):
+    whole = regular(count, 2.0, 1.0)
+    sectors = polygons.of_few_corners(whole, most)
+    assert len(sectors) == parts
+    assert max(len(p) for p in sectors) <= most
+    assert sum(polygons.areas(p) for p in sectors) == pytest.approx(polygons.areas(whole))
+    assert all(polygons.is_convex(p[:, :2], 1e-12) for p in sectors)
+
+
+@pytest.mark.parametrize("arc", [0.3, 2.0, 3.1, 5.0])
+def test_sectors_of_parts_of_discs_are_convex(arc):
+    turn = np.linspace(0, arc, 90)
+    segment = np.stack([np.cos(turn), np.sin(turn), np.zeros(90)], axis=1)
+    sectors = polygons.of_few_corners(segment, 32)
+    assert max(len(p) for p in sectors) <= 32
+    assert sum(polygons.areas(p) for p in sectors) == pytest.approx(polygons.areas(segment))
+    assert all(polygons.is_convex(p[:, :2], 1e-12) for p in sectors)
+    assert all(flat_area(p[:, :2]) > 0 for p in sectors)
+
+
+@pytest.mark.parametrize("points", [40, 200])
+def test_stars_of_many_points_are_parted_in_few_steps(points, monkeypatch):
+    asked, convex = [], polygons.is_convex
+    monkeypatch.setattr(polygons, "is_convex", lambda *a: asked.append(None) or convex(*a))
+    turn = math.pi * np.arange(2 * points) / points
+    radius = np.where(np.arange(2 * points) % 2, 1.0, 2.0)
+    star = radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    parts = polygons.convex_parts(star, 1e-9)
+    assert sum(flat_area(p) for p in parts) == pytest.approx(flat_area(star))
+    assert len(parts) <= points + 3
+    assert len(asked) < points**2 / 3  # neighbours that neither grew are tried once, not after each join

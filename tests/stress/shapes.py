@@ -40,6 +40,21 @@ def under_disc(count: int, how: str) -> Outcome:
     return near(got, [1000 * factor], 1e-6)
 
 
+def beside_disc(count: int, star: bool = False) -> Outcome:
+    """The sky past a round or star-shaped roof of many corners: all but what the roof's triangles hide, by Lambert."""
+    radius = np.where(np.arange(count) % 2, 0.6, 1.0) if star else np.ones(count)
+    loop = ring(1.0, count, 1.0) * np.stack([radius, radius, np.ones(count)], axis=1)
+    scene = luz.Scene()
+    scene.add("floor", [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]], BLACK)
+    scene.add("roof", loop, BLACK)
+    way = loop / np.linalg.norm(loop, axis=1, keepdims=True)
+    poles = np.cross(np.roll(way, -1, axis=0), way)
+    length = np.linalg.norm(poles, axis=1)
+    hidden = abs((np.arcsin(length) * poles[:, 2] / length).sum()) / (2 * math.pi)
+    got = solved(scene, EVEN, bands=24, elements=50, patches=10).at([[0, 0, 0]], [[0, 0, 1]])
+    return near(got, [1000 * math.pi * (1 - hidden)], GLOBE)
+
+
 def under_a_ball() -> Outcome:
     """A luminous ball of 80 facets: flux M·A over 4 π d² far away, in the mean over directions."""
     scene = ball(LAMP, False)
@@ -207,7 +222,9 @@ def situations() -> Iterator[Situation]:
         return Situation(family, f"shapes: {name}", run, long)
 
     for count in (5, 64, 1000):
+        yield row(f"past a roof of {count} corners", lambda n=count: beside_disc(n), count > 100)
         yield row(f"a lamp of {count} corners", lambda n=count: under_disc(n, "polygon"), count > 100)
+    yield row("past a roof of 100 points", lambda: beside_disc(200, True))
     yield row("a lamp of one face of 64", lambda: under_disc(64, "face"))
     yield row("a lamp of a fan of 64", lambda: under_disc(64, "fan"))
     yield row("far from a luminous ball", under_a_ball)
