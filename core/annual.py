@@ -165,12 +165,13 @@ def count_hours(transfer: Transfer, block: Block, hours: np.ndarray, limits: Ite
     _, receivers = block.shape
     lux_hours, sunny = np.zeros(receivers), np.zeros(receivers)
     reached = np.zeros((len(levels), receivers))
-    counted = hours.astype(np.float32)
+    counted = hours[block.order].astype(np.float32)
     for some, lux in block.pieces():
         lux_hours[some] = lux @ counted
         for level, out in zip(levels, reached, strict=True):
             out[some] = (lux >= level).astype(np.float32) @ counted
-        sunny[some] = (block.sunlight(some) >= DIRECT_SUNLIGHT).astype(np.float32) @ counted
+        lit, sunlight = block.sunlight(some)
+        sunny[lit] = (sunlight >= DIRECT_SUNLIGHT).astype(np.float32) @ counted
     return Annual(transfer, float(hours.sum()), lux_hours, levels, reached, sunny, of_faces, block.stages)
 
 

@@ -37,10 +37,12 @@ def checked_lights(lights: Iterable[Daylight | None]) -> list[Daylight | None]:
 
 @dataclass(frozen=True, eq=False)
 class Lights:
-    """Lights as columns, to multiply coefficients with.
+    """Lights as columns, to multiply coefficients with; those whose Suns stand between the same positions together.
 
     Attributes
     ----------
+    order : (n,) int
+        Which of the lights as given each is.
     suns : (s, 3) float
         Positions of the Sun that are followed.
     position, share : (n, 4) int and float
@@ -48,6 +50,7 @@ class Lights:
     daylights : list of Daylight or None
     """
 
+    order: np.ndarray
     suns: np.ndarray
     position: np.ndarray
     share: np.ndarray
@@ -66,7 +69,7 @@ class Lights:
         if spacing == 0:
             suns, own = np.unique(direction[shines], axis=0, return_inverse=True)
             position[shines, 0], share[shines, 0] = own.reshape(-1), strength[shines]
-            return cls(suns, position, share, daylights)
+            return cls._together(suns, position, share, daylights)
         globe = Globe.cut_at_horizon(max(2, round(180.0 / spacing)))
         parcel, weight = globe.interpolation(direction[shines])
         weight = np.maximum(weight, 0.0)  # below the lowest parcels the Sun stands at their height, not beyond
@@ -75,15 +78,33 @@ class Lights:
         at = np.zeros(parcel.shape, np.int64)
         at[weight > 0] = number.reshape(-1)
         position[shines], share[shines] = at, weight * strength[shines, None]
-        return cls(globe.directions[used], position, share, daylights)
+        return cls._together(globe.directions[used], position, share, daylights)
 
-    def columns(self, transfer: Transfer, parcels: np.ndarray, report: Callable[[float], None]) -> np.ndarray:
-        """(k + s, n) float32: luminances of the sky's parcels and the ground [cd/m²], illuminances of Suns [lx]."""
+    @classmethod
+    def _together(cls, suns, position, share, daylights: list[Daylight | None]) -> Lights:
+        order = np.lexsort(position.T)
+        return cls(order, suns, position[order], share[order], [daylights[k] for k in order.tolist()])
+
+    def of_suns(self) -> list[tuple[slice, np.ndarray, np.ndarray]]:
+        """Lights whose Suns stand between the same positions: which, these (c,), and their illuminances (c, m) [lx]."""
+        if not len(self.order):
+            return []
+        first = np.flatnonzero(np.concatenate([[True], (np.diff(self.position, axis=0) != 0).any(axis=1)]))
+        found = []
+        for begin, end in zip(first.tolist(), [*first[1:].tolist(), len(self.order)], strict=True):
+            used = np.flatnonzero(self.share[begin:end].any(axis=0))
+            if len(used):
+                share = np.ascontiguousarray(self.share[begin:end, used].T.astype(np.float32))
+                found.append((slice(begin, end), self.position[begin, used], share))
+        return found
+
+    def skies(self, transfer: Transfer, parcels: np.ndarray, report: Callable[[float], None]) -> np.ndarray:
+        """(k, n) float32: luminances of the sky's parcels, and of the ground [cd/m²]."""
         globe, ground = transfer.geometry.targets.globe, transfer.geometry.targets.sky_parcels
         of_sky = parcels[parcels < ground]
         count = len(of_sky)
         directions = globe.subdirections(of_sky, max(1, round(180 / globe.bands / _SKY_STEP))).reshape(-1, 3)
-        out = np.zeros((len(parcels) + len(self.suns), len(self.daylights)), np.float32)
+        out = np.zeros((len(parcels), len(self.daylights)), np.float32)
 
         def work(some: np.ndarray, checkpoint: Callable[[], None]) -> None:
             for number in some:
@@ -93,14 +114,12 @@ class Lights:
                     continue
                 if light.sky is not None and count:
                     out[:count, number] = light.sky.luminance(directions).reshape(count, -1).mean(axis=1)
-                out[count : len(parcels), number] = light.ground_luminance
+                out[count:, number] = light.ground_luminance
 
         numbers = np.arange(len(self.daylights))
         tasks = [numbers[first : first + _LIGHTS] for first in range(0, len(numbers), _LIGHTS)]
         if tasks:
             run_parallel(work, tasks, transfer.threads, report)
-        light, corner = np.nonzero(self.share)
-        np.add.at(out, (len(parcels) + self.position[light, corner], light), self.share[light, corner])
         return out
 
 
@@ -111,32 +130,50 @@ class Block:
     Attributes
     ----------
     coefficients : Coefficients
-    columns : (k + s, n) float32
-        See `Lights.columns`.
+    order : (n,) int
+        Which of the lights as given each of the lights here is.
+    skies : (k, n) float32
+        See `Lights.skies`.
+    suns : list of (slice, (c,) int, (c, m) float32)
+        See `Lights.of_suns`.
     stages : tuple of Stage
     """
 
     coefficients: Coefficients
-    columns: np.ndarray
+    order: np.ndarray
+    skies: np.ndarray
+    suns: list[tuple[slice, np.ndarray, np.ndarray]]
     stages: tuple[Stage, ...]
 
     @property
     def shape(self) -> tuple[int, int]:
         """Lights and receivers."""
-        return self.columns.shape[1], self.coefficients.count
+        return len(self.order), self.coefficients.count
 
     def pieces(self) -> Iterator[tuple[slice, np.ndarray]]:
         """Some receivers after others: which, and their illuminance (r, n) float32 [lx]."""
-        step = max(1, int(_BLOCK_BYTES / (4 * max(sum(self.columns.shape), 1))))
+        parcels, suns = len(self.coefficients.parcels), len(self.coefficients.suns)
+        step = max(1, int(_BLOCK_BYTES / (4 * max(parcels + suns + len(self.order), 1))))
         for first in range(0, self.coefficients.count, step):
             some = slice(first, min(first + step, self.coefficients.count))
-            found = self.coefficients.rows(some) @ self.columns
+            rows = self.coefficients.rows(some)
+            found = rows[:, :parcels] @ self.skies
+            for lights, positions, share in self.suns:
+                found[:, lights] += rows[:, parcels + positions] @ share
             found += self.coefficients.steady[some, None].astype(np.float32)
             yield some, np.maximum(found, 0.0, out=found)
 
-    def sunlight(self, some: slice) -> np.ndarray:
-        """(r, n) float32: what some receivers get of the Sun without any reflection [lx]."""
-        return self.coefficients.by_sun[0, :, some].T @ self.columns[len(self.coefficients.parcels) :]
+    def sunlight(self, some: slice) -> tuple[np.ndarray, np.ndarray]:
+        """What some receivers get of the Sun without any reflection: who ever does (m,), and (m, n) float32 [lx]."""
+        by_sun = self.coefficients.by_sun[0, :, some]
+        mine = np.flatnonzero(by_sun.any(axis=0))
+        rows = np.ascontiguousarray(by_sun[:, mine].T)
+        reaches = rows.any(axis=0)
+        found = np.zeros((len(mine), len(self.order)), np.float32)
+        for lights, positions, share in self.suns:
+            if reaches[positions].any():
+                found[:, lights] = rows[:, positions] @ share
+        return some.start + mine, found
 
 
 def make_block(
@@ -171,15 +208,15 @@ def make_block(
     if not len(coefficients.parcels):
         recorder.skip("sky", "nothing sees the sky")
     with recorder.stage("skies", 0.6):
-        columns = many.columns(transfer, coefficients.parcels, lambda done: recorder.report(0.6 + 0.3 * done, "skies"))
-    return Block(coefficients, columns, (*transfer.stages, *recorder.stages))
+        skies = many.skies(transfer, coefficients.parcels, lambda done: recorder.report(0.6 + 0.3 * done, "skies"))
+    return Block(coefficients, many.order, skies, many.of_suns(), (*transfer.stages, *recorder.stages))
 
 
 def solve_many(block: Block) -> np.ndarray:
     """(n, r) float32: all of a block [lx]."""
     out = np.empty(block.shape, np.float32)
     for some, found in block.pieces():
-        out[:, some] = found.T
+        out[block.order, some] = found.T
     return out
 
 

@@ -87,6 +87,15 @@ def test_positions_around_the_sun_share_its_light(altitude, azimuth, spacing):
     assert apart.max() <= max(1e-5, 1.6 * spacing) or altitude > 90 - 2 * spacing
 
 
+def test_lights_stay_in_their_order(transfer):
+    lights = [clear(31.3), None, clear(44.7, 351), clear(12.0, 20), clear(31.3), luz.Daylight()]
+    found = transfer.solve_many(lights)
+    for light, lux in zip(lights, found, strict=True):
+        np.testing.assert_allclose(lux, transfer.solve_many([light])[0], rtol=1e-4, atol=1e-3)
+    backwards = transfer.solve_many(lights[::-1])[::-1]
+    np.testing.assert_allclose(backwards, found, rtol=1e-5, atol=1e-3)
+
+
 def test_the_dark_leaves_luminous_surfaces(transfer):
     found = transfer.solve_many([None, NIGHT, luz.Daylight()])
     alone = transfer.solve(luz.Daylight()).illuminance
