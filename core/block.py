@@ -156,10 +156,9 @@ class Block:
         step = max(1, int(_BLOCK_BYTES / (4 * max(parcels + suns + len(self.order), 1))))
         for first in range(0, self.coefficients.count, step):
             some = slice(first, min(first + step, self.coefficients.count))
-            rows = self.coefficients.rows(some)
-            found = rows[:, :parcels] @ self.skies
+            found, by_suns = self.coefficients.illuminance(some, self.skies)
             for lights, positions, share in self.suns:
-                found[:, lights] += rows[:, parcels + positions] @ share
+                found[:, lights] += by_suns[:, positions] @ share
             found += self.coefficients.steady[some, None].astype(np.float32)
             yield some, np.maximum(found, 0.0, out=found)
 

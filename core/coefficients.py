@@ -80,20 +80,39 @@ class Coefficients:
         """Number of receivers."""
         return len(self.steady)
 
-    def rows(self, some: slice) -> np.ndarray:
-        """(r, k + s) float32: coefficients of some receivers."""
-        out = self.diffuse[some].copy() if self.weights is None else weighted(self.weights, some, self.diffuse)
-        out[:, len(self.parcels) :] += self.by_sun[:, :, some].sum(axis=0).T
-        return out
+    def illuminance(self, some: slice, skies: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What some receivers get of many skies, and of each position of the Sun.
+
+        Parameters
+        ----------
+        some : slice
+        skies : (k, n) float32
+            Luminances of the parcels [cd/m²].
+
+        Returns
+        -------
+        by_skies : (r, n) float32 [lx]
+        by_suns : (r, s) float32
+            Per unit of the Sun's normal illuminance.
+        """
+        parcels = len(self.parcels)
+        if self.weights is None:
+            by_skies, by_suns = self.diffuse[some, :parcels] @ skies, self.diffuse[some, parcels:].copy()
+        else:  # receivers share fewer nodes
+            nodes, shares = shares_of_nodes(self.weights, some)
+            diffuse = self.diffuse[nodes]
+            by_skies, by_suns = shares @ (diffuse[:, :parcels] @ skies), shares @ diffuse[:, parcels:]
+        by_suns += self.by_sun[:, :, some].sum(axis=0).T
+        return by_skies, by_suns
 
 
-def weighted(weights: Weights, some: slice, values: np.ndarray) -> np.ndarray:
-    """(r, c) float32: weighted sums of values ``(m, c)`` for some rows."""
+def shares_of_nodes(weights: Weights, some: slice) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (u,) that some receivers follow from, and their shares (r, u) float32."""
     entries = slice(weights.start[some.start], weights.start[some.stop])
     used, column = np.unique(weights.node[entries], return_inverse=True)
     shares = np.zeros((some.stop - some.start, len(used)), np.float32)
     np.add.at(shares, (weights.rows_of(some), column.reshape(-1)), weights.weight[entries])
-    return shares @ values[used]
+    return used, shares
 
 
 def face_weights(transfer: Transfer) -> Weights:
