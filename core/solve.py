@@ -369,9 +369,11 @@ def gather_patches(transfer: Transfer, exitance: np.ndarray, exact: bool) -> np.
 def brought_home(transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray) -> tuple[np.ndarray, float]:
     """Illuminance that elements of exitance ``(e,)`` cause, made to sum to it where none escapes; lumens out by."""
     conservation = transfer.conservation
-    sent = float((transfer.geometry.areas * exitance) @ (1 - conservation.lost))
-    missing = sent - float(conservation.kept @ illuminance)
-    if float((transfer.geometry.areas * exitance) @ conservation.lost) > _CLOSED * sent:
+    flux = transfer.geometry.areas * exitance
+    escaping = _sum(flux, conservation.lost)
+    sent = float(flux.sum()) - escaping
+    missing = sent - _sum(conservation.kept, illuminance)
+    if escaping > _CLOSED * sent:
         return illuminance, missing  # the globe knows what escapes less well than this light is known
     home = illuminance + missing * _spread(transfer, illuminance)
     if home.min(initial=0.0) < 0:
@@ -386,14 +388,19 @@ def settled_home(
     conservation, area = transfer.conservation, transfer.geometry.areas
     stays = area * share * (1 - conservation.lost)
     spread = _spread(transfer, interreflected)
-    missing = float(stays @ (initial + interreflected)) - float(conservation.kept @ interreflected)
+    missing = _sum(stays, initial + interreflected) - _sum(conservation.kept, interreflected)
     # of the scene, not of the light at hand, so that lights add up
-    trust = trusted(float((area * share) @ conservation.lost) / max(float((area * share).sum()), 1e-300))
-    home = interreflected + trust * missing / max(1 - float(stays @ spread), 1e-12) * spread
+    trust = trusted(_sum(area * share, conservation.lost) / max(float((area * share).sum()), 1e-300))
+    home = interreflected + trust * missing / max(1 - _sum(stays, spread), 1e-12) * spread
     if home.min(initial=0.0) < 0:  # too much arrived, and some are too dark to give of it: all give by what they have
-        landed, leaving = float(conservation.kept @ interreflected), float(stays @ interreflected)
+        landed, leaving = _sum(conservation.kept, interreflected), _sum(stays, interreflected)
         home = interreflected * max(1 + trust * missing / max(landed - leaving, 1e-12 * landed, 1e-300), 0.0)
     return home, missing
+
+
+def _sum(some: np.ndarray, others: np.ndarray) -> float:
+    """Sum of products ``(e,)``: for inner products as long as this BLAS wakes threads that then wait for work."""
+    return float((some * others).sum())
 
 
 def _spread(transfer: Transfer, illuminance: np.ndarray) -> np.ndarray:

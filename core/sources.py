@@ -285,7 +285,8 @@ class SourceView:
         seen = leg.seen(row, which, standing.corners, group.exitance[some[which]])
         if len(seen.row):
             normal = path.horizon.normal
-            light_past(outlines, standing, unseen, seen, leg.points, normal, path.mirrors, leg.rows, received)
+            on_way = path.mirrors, path.throughput
+            light_past(outlines, standing, unseen, seen, leg.points, normal, *on_way, leg.rows, received)
 
     def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, received: Received, checkpoint) -> None:
         outlines, tolerance = self.bright.outlines, self.bright.outlines.tolerance

@@ -228,6 +228,7 @@ def light_past(
     points,
     normal,
     mirrors: Sequence[Reflecting],
+    throughput: float,
     rows,
     received: Received,
 ) -> None:
@@ -244,6 +245,8 @@ def light_past(
     points : (r, 3) float
     normal : (3,) float
     mirrors : sequence of Reflecting
+    throughput : float
+        Product of their largest reflectances.
     rows : (r,) int
         Receivers of what is seen at the points.
     received : Received
@@ -254,12 +257,11 @@ def light_past(
         if varies:
             enter(some.made()[0])
         else:
-            received.add_seen(rows[some.row], share * some.weight, some, standing.counts, normal)
+            received.add_seen(rows[some.row], throughput * some.weight, some, standing.counts, normal)
 
     def enter(some: Shapes) -> None:
         received.add(rows[some.row], _reflected(some, mirrors), some.shape, normal)
 
-    share = float(np.prod([mirror.share(normal[None])[0] for mirror in mirrors]))
     blockers, overlaps = standing.blockers, standing.overlaps
     if len(overlaps.outer):
         facing = blockers.facing(points, unseen_backs, outlines.tolerance)
