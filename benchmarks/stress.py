@@ -4,7 +4,7 @@ Invariance (moved, scaled, turned, split), degenerate geometry, energy, light, s
 a situation does not come out as expected.
 
     python benchmarks/stress.py                  # all but the long ones, some ten minutes
-    python benchmarks/stress.py --long           # the long ones as well (millions of triangles, full resolution)
+    python benchmarks/stress.py --long           # the long ones as well (millions of triangles), half an hour
     python benchmarks/stress.py --only energy    # one family, or situations with this in their name
 
 What takes longer than --limit seconds (300) is stopped and counts as not as expected.

@@ -94,7 +94,7 @@ def settle_parts(seen, nearest, possible, candidates: Candidates, eye: Eye, beam
     left_towards[rest] -= moment / np.maximum(1.0 - total[rest], 1e-3)[:, None]
 
     unsettled = ~simple & ~filled
-    exactly = unsettled & ((background == OPEN) | (size <= 2)) & (size <= _MOST)
+    exactly = unsettled & (size <= _MOST)
     mine, groups = np.flatnonzero(exactly[group]), np.flatnonzero(exactly)
     more = np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 3))
     if len(groups):

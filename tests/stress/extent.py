@@ -43,7 +43,7 @@ def one_face_below(n: int, **options) -> Outcome:
     scene.add("ceiling", vertices, BLACK, faces=faces)
     flat.add("ceiling", [[-5, 5, 1], [5, 5, 1], [5, -5, 1], [-5, -5, 1]], BLACK)
     lux = [prepare_coarse(s, elements=20, bands=60, **options).solve(EVEN).mean("floor") for s in (scene, flat)]
-    return near(lux[0], lux[1], 0.05, 2.0)
+    return near(lux[0], lux[1], 0.02)
 
 
 def within_memory(n: int, memory: float) -> Outcome:

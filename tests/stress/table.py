@@ -16,6 +16,7 @@ import kept
 import known_answers
 import lights
 import meshes
+import openings
 import precision
 import shapes
 import sides
@@ -24,7 +25,7 @@ from situations import Situation
 
 ROOMS = (
     *(known_answers, invariance, degenerate, drawing, energy, lights, extent, precision),
-    *(equilibrium, glass, kept, meshes, shapes, sides, year),
+    *(equilibrium, glass, kept, meshes, openings, shapes, sides, year),
 )
 ALIKE = (
     *("E01-scale1", "E01-scale2", "E02-translate0", "E02-translate1", "E02-translate2", "E03-rotz1", "E03-rotz2"),
