@@ -23,6 +23,9 @@ rounding shall not decide to which side."""
 
 _SKY_SUBDIVISION = 4
 
+_FEW = 30
+"""What goes to fewer than one in so many places is sorted, rather than the whole matrix gone through."""
+
 
 @dataclass(frozen=True, eq=False)
 class Targets:
@@ -116,7 +119,7 @@ def gather(
     for s in sightings:
         parts = s.part_weights()
         if s.mirrors > sight.limits.exact_mirrors:
-            deep = np.zeros_like(patches) if deep is None else deep
+            deep = np.zeros(patches.shape) if deep is None else deep
             _add_patches(s, parts, targets, deep, unlit)
         else:
             _add_patches(s, parts, targets, patches, unlit)
@@ -143,8 +146,7 @@ def _add_patches(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarr
     _add_whole_beams(s, targets, out, unlit)
     row, patch, weight = _parts_of_beams(s, parts, targets, unlit)
     if len(row):
-        flat = s.rows[row] * out.shape[1] + patch
-        out += np.bincount(flat, weights=weight, minlength=out.size).reshape(out.shape)
+        _add(out, s.rows[row] * out.shape[1] + patch, weight)
 
 
 def _add_whole_beams(s: Sighting, targets: Targets, out: np.ndarray, unlit: np.ndarray) -> None:
@@ -260,7 +262,7 @@ def _add_mirrored_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
     parcels, shares = _columns(s.beams.directions, targets)
     flat = s.rows[row, None] * targets.columns + parcels[beam]
     shares = weight[:, None] * shares[beam]
-    out += np.bincount(flat.ravel(), weights=shares.ravel(), minlength=out.size).reshape(out.shape)
+    _add(out, flat.ravel(), shares.ravel())
 
 
 def _splat(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) -> None:
@@ -270,7 +272,19 @@ def _splat(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) ->
     parcels, shares = _columns(s.view.part_direction[mine], targets)
     flat = s.rows[s.view.part_row[mine], None] * targets.columns + parcels
     weights = parts[mine, None] * shares
-    out += np.bincount(flat.ravel(), weights=weights.ravel(), minlength=out.size).reshape(out.shape)
+    _add(out, flat.ravel(), weights.ravel())
+
+
+def _add(out: np.ndarray, place: np.ndarray, weights: np.ndarray) -> None:
+    """Add weights at places of the flattened matrix, some of them to the same."""
+    if _FEW * len(place) > out.size:
+        out += np.bincount(place, weights=weights, minlength=out.size).reshape(out.shape)
+        return
+    order = np.argsort(place, kind="stable")
+    place = place[order]
+    first = np.flatnonzero(np.diff(place, prepend=-1))
+    if len(first):
+        out.reshape(-1)[place[first]] += np.add.reduceat(weights[order], first)
 
 
 def _columns(directions: np.ndarray, targets: Targets) -> tuple[np.ndarray, np.ndarray]:

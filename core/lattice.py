@@ -12,6 +12,10 @@ _ON_EDGE = 1e-6
 """Rays this close to an edge [rad] count as inside, so that none slips between two obstacles that share it."""
 
 
+_BLOCK = 1_000
+"""Obstacles in beams that are looked at together: arrays of these times rays stay in cache."""
+
+
 def sample(
     crossed: Crossed, candidates: Candidates, background, order: int, eye: Eye, beams: Beams, obstacles: Obstacles
 ):
@@ -35,8 +39,24 @@ def sample(
     share, towards : (n,) and (n, 3) float
     left, left_towards : (g,) and (g, 3) float
     """
+    planes, begin, found = eye.planes.astype(np.float32), np.append(crossed.starts, len(crossed.row)), []
+    first = 0
+    while first < len(background):
+        last = int(np.searchsorted(begin, begin[first] + _BLOCK, side="right")) - 1
+        last = min(max(last, first + 1), len(background))
+        some = crossed.take(np.arange(begin[first], begin[last]))
+        found.append(_sampled(some, candidates, background[first:last], order, eye, planes, beams, obstacles))
+        first = last
+    share, towards, left, left_towards = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return share, towards, left, left_towards
+
+
+def _sampled(
+    crossed: Crossed, candidates: Candidates, background, order: int, eye: Eye, planes, beams: Beams, obstacles
+):
+    """As `sample`, for beams few enough to stay in cache; ``planes`` (r, o, w, 3) float32 are the eye's."""
     row, beam, obstacle, starts = crossed.row, crossed.beam, crossed.obstacle, crossed.starts
-    planes, heights, normal = eye.planes.astype(np.float32), eye.heights, eye.normal
+    heights, normal = eye.heights, eye.normal
     local = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(row))))
     single = np.float32
     rays = beams.rays(beam[starts], order)
