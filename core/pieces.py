@@ -100,6 +100,9 @@ class SeenShapes:
         height += planes[2, :, None] * shape[2]
         beside = ((height.max(axis=1) <= 0) & windows.edges.take(row, axis=1)).any(axis=0)
         cut = (height.min(axis=1) < 0).any(axis=0)
+        some = np.flatnonzero(cut & ~beside)
+        # polygons that cross a mirror may leave but an edge behind it, which a window must not find inside
+        beside[some] = ~has_area(shape.take(some, axis=2).transpose(2, 1, 0))
         return replace(every, cut=cut).take(np.flatnonzero(~beside))
 
     @property
