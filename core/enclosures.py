@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arrays import dots
 from .geometry import Geometry
 from .nodes import Nodes
 from .rays import RayScene
@@ -23,6 +24,9 @@ _MOST_PAIRS = 40
 
 _SEALED = 1 - 1e-6
 """Share of a way at which whatever is met is its end."""
+
+_INSIDE = 0.01
+"""How far inside triangles ways end, that no wall which stands on their border counts as their end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,15 +188,16 @@ def _opaque(geometry: Geometry) -> RayScene:
 
 
 def _open(geometry: Geometry, nodes: Nodes, rays: RayScene, node, patch, chance) -> np.ndarray:
-    """(k,) bool: whether the ways from nodes to random places on patches meet nothing before, and these's lit side."""
+    """(k,) bool: whether ways from nodes lead ahead to random places on patches' lit sides, and meet nothing before."""
     of = geometry.targets.patches.of_element
     order = np.argsort(of, kind="stable")
     start, end = np.searchsorted(of[order], [patch, patch + 1])
     element = order[start + (chance.random(len(patch)) * (end - start)).astype(int)]
-    share = chance.dirichlet([1.0, 1.0, 1.0], len(patch))
+    share = _INSIDE / 3 + (1 - _INSIDE) * chance.dirichlet([1.0, 1.0, 1.0], len(patch))
     way = np.einsum("kv,kvc->kc", share, geometry.fracture.elements[element]) - nodes.points[node]
     _, distance = rays.nearest(nodes.points[node], way)
-    return (distance >= _SEALED) & (np.einsum("kc,kc->k", way, geometry.element_normals[element]) < 0)
+    ahead = dots(way, geometry.element_normals[nodes.element[node]]) > 0
+    return (distance >= _SEALED) & ahead & (dots(way, geometry.element_normals[element]) < 0)
 
 
 def _moved_home(factors: np.ndarray, of_rows: np.ndarray, of_patches: np.ndarray, sealed: np.ndarray) -> None:

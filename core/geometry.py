@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from .clusters import MANY_FACETS
+from .contacts import divided
 from .doubles import seen_once
 from .errors import SceneError
 from .facets import Facets
@@ -184,13 +185,14 @@ def make_geometry(
     cuts = fracture(planes, cut, reflects, two_sided, max_area, times, wanted, emits)
     if len(cuts.grids) > MANY_FACETS // 2:  # cells of meshes, too many for lattices of their own
         cuts = replace(cuts, grids=tuple(grid for grid in cuts.grids if grid.rows * grid.columns > 1))
-    points = cuts.elements.mean(axis=1)
     fronts = len(planes.sheet_surface)
+    lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes) for grid in cuts.grids]
+    cuts = divided(cuts, lattices)
+    points = cuts.elements.mean(axis=1)
     normals = (
         planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]
     )
     active = (reflects | emits)[cuts.element_surface] & (planes.stands_for[cuts.element_sheet] == cuts.element_sheet)
-    lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes) for grid in cuts.grids]
     patches = make_patches(
         planes, cuts.elements, cuts.element_sheet, active, cuts.element_areas, round(PATCHES * times), lattices
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -35,15 +36,15 @@ class Layout:
     grid : Grid
     contacts : (c, 2, 2) float
         Lines along which other surfaces touch the run, in cells.
-    cut : (rows, columns) bool
-        Cells that such a line cuts.
+    crossed : tuple of (k,) int
+        Numbers of the cells that each of them cuts.
     stretches : pair of lists of (first cell, cells)
         Along either axis, between lines of contact.
     """
 
     grid: Grid
     contacts: np.ndarray
-    cut: np.ndarray
+    crossed: tuple[np.ndarray, ...]
     stretches: tuple[list, list]
 
     @classmethod
@@ -51,14 +52,35 @@ class Layout:
         """Layout that suits a run, what touches it and what passes close over it."""
         touched = _touched(grid, sheet, planes)
         contacts = touched[~grid.along_border(touched)]
-        cut = np.zeros(grid.shape, bool)
-        for line in contacts:
-            cut[_crossed_cells(line, cut.shape)] = True
+        crossed = tuple(_crossed_cells(line, grid.shape) for line in contacts)
         passed = _passed(grid, sheet, planes)
         rows, columns = (
             _stretches(grid.shape[axis], touched[:, :, axis], passed[axis], grid.spacing[axis]) for axis in (0, 1)
         )
-        return cls(grid, contacts, cut, (rows, columns))
+        return cls(grid, contacts, crossed, (rows, columns))
+
+    @cached_property
+    def cut(self) -> np.ndarray:
+        """(rows, columns) bool: cells that a line of contact cuts."""
+        cut = np.zeros(self.grid.rows * self.grid.columns, bool)
+        for cells in self.crossed:
+            cut[cells] = True
+        return cut.reshape(self.grid.shape)
+
+    def cell_of(self, places: np.ndarray) -> np.ndarray:
+        """(n,) int: number of the cell that each place ``(n, 2)`` in cells lies in, or next to."""
+        row, column = np.clip(np.floor(places).astype(int), 0, np.array(self.grid.shape) - 1).T
+        return row * self.grid.columns + column
+
+    def sides(self, places: np.ndarray) -> np.ndarray:
+        """(n,) int: the same for places ``(n, 2)``, in cells, on the same side of all lines that cut their cell."""
+        cell, sides = self.cell_of(places), np.zeros(len(places), np.int64)
+        for (a, b), crossed in zip(self.contacts, self.crossed, strict=True):
+            mine = np.isin(cell, crossed)
+            step, way = b - a, places - a
+            beyond = step[0] * way[:, 1] > step[1] * way[:, 0]
+            sides = np.unique(3 * sides + np.where(mine, 1 + beyond, 0), return_inverse=True)[1].reshape(-1)
+        return sides
 
 
 def _stretches(count: int, contacts: np.ndarray, passed: np.ndarray, spacing: int) -> list:
@@ -113,9 +135,19 @@ def _touched(grid: Grid, sheet: int, planes: Planes) -> np.ndarray:
     return lines if len(lines) <= _MOST_CONTACTS else lines[:0]
 
 
-def _crossed_cells(line: np.ndarray, shape) -> tuple[np.ndarray, np.ndarray]:
-    samples = max(2, int(8 * np.abs(line[1] - line[0]).max()) + 1)
-    places = line[0] + np.linspace(0.0, 1.0, samples)[:, None] * (line[1] - line[0])
+def _crossed_cells(line: np.ndarray, shape) -> np.ndarray:
+    """Numbers of the cells that a line ``(2, 2)`` in cells cuts, not only touches."""
+    start, step = line[0], line[1] - line[0]
+    low, high = np.ceil(line.min(axis=0)), np.floor(line.max(axis=0))
+    ends = [
+        (np.arange(a, b + 1) - start[axis]) / step[axis]
+        for axis, (a, b) in enumerate(zip(low, high, strict=True))
+        if abs(step[axis]) > ON_LINE
+    ]
+    ends = np.unique(np.concatenate([[0.0, 1.0], *ends]))
+    ends = ends[(ends >= 0) & (ends <= 1)]
+    middles = 0.5 * (ends[1:] + ends[:-1])[np.diff(ends) * np.linalg.norm(step) > ON_LINE]
+    places = start + middles[:, None] * step
     inside = (np.abs(places - np.rint(places)) > ON_LINE).all(axis=1)
     cells = np.clip(np.floor(places[inside]).astype(int), 0, np.array(shape) - 1)
-    return cells[:, 0], cells[:, 1]
+    return np.unique(cells[:, 0] * shape[1] + cells[:, 1])

@@ -2,8 +2,8 @@
 
 Form factors vary evenly over a plane but for the lines where something touches it, and near openings. So a regular run
 of cells is given receivers on a lattice, dense at its borders and beside lines of contact, wide in between, and its
-elements get their values by cubic interpolation that never reaches across a line of contact. Elements that such a line
-cuts have receivers of their own, one for each part; so have those where interpolation is in doubt, once that shows.
+elements get their values by cubic interpolation that never reaches across a line of contact. Elements of cells that
+such a line cuts have receivers of their own; so have those where interpolation is in doubt, once that shows.
 """
 
 from __future__ import annotations
@@ -92,14 +92,12 @@ class Nodes:
 
     @classmethod
     def of(cls, fracture: Fracture, lattices: list[Layout]) -> Nodes:
-        """The lattice of a scene, and own receivers for elements that lie in no run or across a line of contact."""
+        """The lattice of a scene, and own receivers for elements that lie in no run, or in a cell that is cut."""
         entries = _Entries()
         alone = np.ones(len(fracture.elements), bool)
         for lattice in lattices:
             _enter(lattice, entries)
-            alone[lattice.grid.elements] = False
-        for lattice in lattices:
-            entries.own(*_pieces(fracture.elements, lattice))
+            alone[lattice.grid.elements] = np.repeat(lattice.cut.ravel(), 2)
         single = np.flatnonzero(alone)
         facets = np.bincount(fracture.element_sheet[single])[fracture.element_sheet[single]] <= _FACET
         if np.count_nonzero(facets) > MANY_FACETS:
@@ -469,23 +467,3 @@ def _stencils(stretches: list, cells: np.ndarray, centre: float, places: np.ndar
         numbers[mine, :used] = first + index
         first += len(lines)
     return numbers, weights
-
-
-def _pieces(elements, lattice: Layout):
-    """Cut cells' elements along the lines: element, centroid and share of each piece."""
-    grid = lattice.grid
-    cells = np.flatnonzero(lattice.cut.ravel())
-    owner = grid.first + np.stack([2 * cells, 2 * cells + 1], axis=1).ravel()
-    shapes, areas = elements[owner], polygons.areas(elements[owner])
-    total = np.zeros(len(elements))
-    total[owner] = areas
-    for a, b in lattice.contacts:
-        wall = polygons.cross(grid.normal, grid.place(b) - grid.place(a))
-        wall /= np.linalg.norm(wall)
-        sides = [polygons.clip(shapes, side * wall, side * float(wall @ grid.place(a))) for side in (1.0, -1.0)]
-        shapes = polygons.joined(sides)
-        owner, areas = np.tile(owner, 2), polygons.areas(shapes)
-        keep = areas > 1e-6 * total[owner]
-        shapes, owner, areas = shapes[keep], owner[keep], areas[keep]
-    weight = areas / np.maximum(np.bincount(owner, weights=areas, minlength=len(elements))[owner], 1e-300)
-    return owner, polygons.centroids(shapes), weight

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .grid import Grid
+from .grid import ON_LINE, Grid
 from .layout import Layout
 from .planes import Planes
 from .profiles import Profile, profile_shares
@@ -17,6 +17,13 @@ _WIDEST = 1.0
 
 _GROWTH = 0.4
 """Growth of patches with the distance from the end of a stretch."""
+
+_FINEST, _NEAR_ENOUGH, _ASKEW = 16, 2e-3, 8
+"""Parts of a cell that are told apart at most where a line of contact cuts it; how much farther off than with the best
+number of parts the line may be, in cells; and parts where it runs askew."""
+
+_MOST_PLACES = 400_000
+"""Parts of one run's cells that are told apart."""
 
 _PARTS = 20
 """Columns across a narrow strip, about: an odd number, as whole slats far away are seen at their middle."""
@@ -144,13 +151,14 @@ def make_patches(
             planes.outlines[planes.outline_sheet == sheet % fronts].reshape(-1, 3) @ planes.sheet_axes[sheet % fronts].T
         )
         low, extent = outline.min(axis=0), np.maximum(np.ptp(outline, axis=0), 1e-300)
-        if sheet in runs and len(members) == 2 * runs[sheet].cut.size:
-            graded = _graded(runs[sheet], planes.sheet_axes[sheet % fronts], low, extent, patch_area)
+        run = runs.get(int(sheet))
+        if run is not None and _make_up(run, members, in_cells := run.grid.in_cells(centroids[members])):
+            graded = _graded(run, planes.sheet_axes[sheet % fronts], low, extent, patch_area, in_cells)
             if graded is not None:
                 patch, table, shares = graded
                 shape[sheet], base[sheet] = table.shape, cells
                 origin[sheet], scale[sheet] = low, shape[sheet] / extent
-                of_element[runs[sheet].grid.elements] = count + np.repeat(patch.ravel(), 2)
+                of_element[members] = count + patch
                 if shares is None:
                     grid.append(count + table.ravel())
                 else:
@@ -192,10 +200,19 @@ def make_patches(
     return Patches(count, of_element, origin, scale, shape, base, column, after)
 
 
+def _make_up(layout: Layout, members: np.ndarray, in_cells: np.ndarray) -> bool:
+    """Whether elements of a sheet, at places ``(k, 2)``, are a run's, with what its cut cells are divided into."""
+    run = layout.grid.elements
+    own = (members >= run.start) & (members < run.stop)
+    inside = (in_cells[~own] > 0).all() and (in_cells[~own] < layout.grid.shape).all()
+    whole = np.count_nonzero(own) == run.stop - run.start
+    return bool(whole and inside and layout.cut.ravel()[layout.cell_of(in_cells[~own])].all())
+
+
 def _graded(
-    lattice: Layout, axes, low, extent, patch_area: float
+    lattice: Layout, axes, low, extent, patch_area: float, in_cells: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray | None] | None:
-    """Patches of a run's cells ``(rows, columns)``, and the same along the sheet's axes; None where those lie askew.
+    """Patches of a run's elements at places ``(k, 2)``, and by place along the sheet's axes; None where it lies askew.
 
     Across a strip narrower than a patch the latter are numbers of parts, and third is what these are of patches.
     """
@@ -219,6 +236,10 @@ def _graded(
         numbers = groups[1 - axis][:, None] * len(shares) + np.arange(len(shares))
         patch = groups[1 - axis][:, None] * counts[axis] + groups[axis]
         numbers, patch = (numbers, patch) if axis == 1 else (numbers.T, patch.T)
+    of_element = patch.ravel()[lattice.cell_of(in_cells)]
+    if shares is None and lattice.cut.any():
+        finer = _fine_enough(lattice)
+        of_element, numbers = _by_side(lattice, patch, in_cells, finer)
     rows, columns = np.indices(numbers.shape)
     centre = (
         grid.corner
@@ -229,7 +250,48 @@ def _graded(
     place = np.clip(((centre @ axes.T - low) * (shape / extent)).astype(int), 0, shape - 1)
     table = np.zeros(shape, np.int64)
     table[place[:, :, 0], place[:, :, 1]] = numbers
-    return patch, table, shares
+    return of_element, table, shares
+
+
+def _fine_enough(lattice: Layout) -> list[int]:
+    """In how many parts cells have to be told apart along either axis, so that lines of contact run between them."""
+    step = np.abs(lattice.contacts[:, 1] - lattice.contacts[:, 0])
+    finer = []
+    for axis in (0, 1):
+        place = lattice.contacts[step[:, axis] < ON_LINE, 0, axis]
+        place = place[np.abs(place - np.rint(place)) > ON_LINE] % 1
+        askew = (step.min(axis=1) >= ON_LINE).any()
+        parts = np.arange(1, _FINEST + 1)
+        nearest = np.clip(np.rint(place[:, None] * parts), 1, np.maximum(parts - 1, 1)) / parts
+        off = np.abs(place[:, None] - nearest).max(axis=0, initial=_ASKEW / _FINEST if askew else 0.0)
+        finer.append(int(parts[np.flatnonzero(off <= off.min() + _NEAR_ENOUGH)[0]]) if len(place) else 1)
+        if askew:
+            finer[-1] = max(finer[-1], _ASKEW)
+    return finer if lattice.cut.size * math.prod(finer) <= _MOST_PLACES else [1, 1]
+
+
+def _by_side(
+    lattice: Layout, patch: np.ndarray, in_cells: np.ndarray, finer: list[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Patches of cells, divided by lines of contact: those of elements at places ``(k, 2)``, and of parts of cells."""
+    along = [(np.arange(count * parts) + 0.5) / parts for count, parts in zip(patch.shape, finer, strict=True)]
+    places = np.stack(np.meshgrid(*along, indexing="ij"), axis=2)
+    every = np.concatenate([in_cells, places.reshape(-1, 2)])
+    side = lattice.sides(every)
+    sides = int(side.max()) + 1
+    key = patch.ravel()[lattice.cell_of(every)] * sides + side
+    mine, there = key[: len(in_cells)], key[len(in_cells) :].reshape(places.shape[:2])
+    # slivers too narrow for a place of their own get the one in their middle
+    narrow = np.flatnonzero(~np.isin(mine, there))
+    row, column = np.floor(in_cells[narrow] * finer).astype(int).T
+    there[row, column] = mine[narrow]
+    # places that no element is found by are of the next side of their patch
+    known = np.unique(mine)
+    of_patch = there // sides
+    following = known[np.minimum(np.searchsorted(known, there), len(known) - 1)]
+    first = known[np.searchsorted(known, of_patch * sides)]
+    there = np.where(following // sides == of_patch, following, first)
+    return np.searchsorted(known, mine), np.searchsorted(known, there)
 
 
 def _groups(stretches: list, most: int, spacing: int = 1) -> np.ndarray:

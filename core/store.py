@@ -40,7 +40,7 @@ _DAMAGED = (
 )
 """What NumPy and zipfile raise over bytes that they cannot make sense of, and `_array` over what does not fit."""
 
-FORMAT = 3
+FORMAT = 4
 """Raised with every change of what files hold or of how it is found."""
 
 _ARRAYS = (
