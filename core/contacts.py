@@ -13,29 +13,41 @@ import numpy as np
 from . import polygons
 from .fracture import Fracture
 from .layout import Layout
+from .planes import Planes
 
 _SLIVER = 1e-9
-"""Parts smaller than this share of a cell are left out."""
+"""Parts smaller than this share of a cell, or element, are left out."""
+
+_MOST_SHEETS = 300
+"""Where more sheets than this have elements in no run, these are left whole."""
+
+_NONE = np.zeros(0, np.int64)
 
 
-def divided(cuts: Fracture, layouts: list[Layout]) -> Fracture:
-    """Elements of cells that lines of contact cut in triangles on one side each.
+def divided(cuts: Fracture, layouts: list[Layout], planes: Planes) -> Fracture:
+    """Elements that lines of contact cut in triangles on one side each.
 
     Parameters
     ----------
     cuts : Fracture
     layouts : list of Layout
-        Of its runs.
+        Of its runs, where all elements of cut cells are divided.
+    planes : Planes
 
     Returns
     -------
     Fracture
         One triangle of each such element has its number, the others follow after all elements.
     """
-    found = [_triangles(cuts.elements, layout) for layout in layouts if layout.cut.any()]
-    if not found:
+    found = [_of_run(cuts.elements, layout) for layout in layouts if layout.cut.any()]
+    loose = np.ones(len(cuts.elements), bool)
+    for grid in cuts.grids:
+        loose[grid.elements] = False
+    for sheet in _large(cuts, loose):
+        found.append(_of_sheet(cuts.elements, np.flatnonzero(loose & (cuts.element_sheet == sheet)), sheet, planes))
+    owner, triangles = (np.concatenate(part) for part in zip((_NONE, np.zeros((0, 3, 3))), *found, strict=True))
+    if not len(owner):
         return cuts
-    owner, triangles = (np.concatenate(part) for part in zip(*found, strict=True))
     first = np.diff(owner, prepend=-1) != 0
     elements = cuts.elements.copy()
     elements[owner[first]] = triangles[first]
@@ -50,14 +62,65 @@ def divided(cuts: Fracture, layouts: list[Layout]) -> Fracture:
     )
 
 
-def _triangles(elements: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
+def _large(cuts: Fracture, loose: np.ndarray) -> list[int]:
+    """Sheets of several elements that lie in no run, none where there are very many."""
+    sheets, count = np.unique(cuts.element_sheet[loose], return_counts=True)
+    sheets = sheets[count > 1]
+    return sheets.tolist() if len(sheets) <= _MOST_SHEETS else []
+
+
+def _of_sheet(elements: np.ndarray, mine: np.ndarray, sheet: int, planes: Planes) -> tuple[np.ndarray, np.ndarray]:
+    """The same as `_of_run` for elements ``mine`` of a sheet that lie in no run."""
+    axes = planes.sheet_axes[sheet % len(planes.sheet_surface)]
+    corners = elements[mine] @ axes.T
+    low = corners.min(axis=(0, 1))
+    layout = Layout.over(sheet, (1, 1), axes, low, corners.max(axis=(0, 1)) - low, planes)
+    owner, shapes, cut = mine, elements[mine], np.zeros(len(elements), bool)
+    least = _SLIVER * np.bincount(mine, polygons.areas(shapes), len(elements))
+    for line in layout.contacts:
+        begin, end = (layout.grid.place(place) for place in line)
+        way = end - begin
+        wall = polygons.cross(layout.grid.normal, way)
+        wall /= np.linalg.norm(wall)
+        above = (shapes - begin) @ wall
+        reach = 1e-9 * planes.size
+        hit = (above.min(axis=1) < -reach) & (above.max(axis=1) > reach)
+        # what of the line lies within each shape, as shares of the contact
+        next_above, share = np.roll(above, -1, axis=1), (shapes - begin) @ way / (way @ way)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at = share + above / (above - next_above) * (np.roll(share, -1, axis=1) - share)
+        between = above * next_above <= 0
+        first = np.where(between & np.isfinite(at), at, np.inf).min(axis=1)
+        last = np.where(between & np.isfinite(at), at, -np.inf).max(axis=1)
+        hit &= np.minimum(last, 1) - np.maximum(first, 0) > 1e-6
+        cut[owner[hit]] = True
+        halves = [polygons.clip(shapes[hit], sign * wall, sign * float(wall @ begin)) for sign in (1.0, -1.0)]
+        shapes = polygons.joined([shapes[~hit], *halves])
+        owner = np.concatenate([owner[~hit], owner[hit], owner[hit]])
+        kept = polygons.areas(shapes) > least[owner]
+        shapes, owner = shapes[kept], owner[kept]
+    owner, triangles, areas = _fans(owner[cut[owner]], shapes[cut[owner]], least)
+    order = np.lexsort((-areas, owner))
+    return owner[order], triangles[order]
+
+
+def _fans(owner: np.ndarray, shapes: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shapes ``(k, v, 3)`` in triangles, with their owners and areas, but for those of less than ``least`` of these."""
+    fans = [shapes[:, [0, k, k + 1]] for k in range(1, shapes.shape[1] - 1)]
+    triangles, owner = np.concatenate(fans), np.tile(owner, len(fans))
+    areas = polygons.areas(triangles)
+    kept = areas > least[owner]
+    return owner[kept], triangles[kept], areas[kept]
+
+
+def _of_run(elements: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     """What elements of cut cells are divided into: the element of each ``(t,)``, and triangles ``(t, 3, 3)``.
 
     Those of one element follow each other. First is, where possible, one of the side that most of its cell lies on, so
     that the halves of a cell can be compared.
     """
     grid = layout.grid
-    least = _SLIVER * float(grid.sides.prod())
+    least = np.full(len(elements), _SLIVER * float(grid.sides.prod()))
     cells = np.flatnonzero(layout.cut)
     owner = grid.first + np.stack([2 * cells, 2 * cells + 1], axis=1).ravel()
     shapes = elements[owner]
@@ -69,13 +132,9 @@ def _triangles(elements: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.nda
         halves = [polygons.clip(shapes[mine], sign * wall, sign * float(wall @ begin)) for sign in (1.0, -1.0)]
         shapes = polygons.joined([shapes[~mine], *halves])
         owner = np.concatenate([owner[~mine], owner[mine], owner[mine]])
-        kept = polygons.areas(shapes) > least
+        kept = polygons.areas(shapes) > least[owner]
         shapes, owner = shapes[kept], owner[kept]
-    fans = [shapes[:, [0, k, k + 1]] for k in range(1, shapes.shape[1] - 1)]
-    triangles, owner = np.concatenate(fans), np.tile(owner, len(fans))
-    areas = polygons.areas(triangles)
-    kept = areas > least
-    triangles, owner, areas = triangles[kept], owner[kept], areas[kept]
+    owner, triangles, areas = _fans(owner, shapes, least)
     side = layout.sides(grid.in_cells(triangles.mean(axis=1)))
     cell = (owner - grid.first) // 2
     _, part = np.unique(np.stack([cell, side]), axis=1, return_inverse=True)

@@ -187,7 +187,7 @@ def make_geometry(
         cuts = replace(cuts, grids=tuple(grid for grid in cuts.grids if grid.rows * grid.columns > 1))
     fronts = len(planes.sheet_surface)
     lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes) for grid in cuts.grids]
-    cuts = divided(cuts, lattices)
+    cuts = divided(cuts, lattices, planes)
     points = cuts.elements.mean(axis=1)
     normals = (
         planes.sheet_normal[cuts.element_sheet % fronts] * np.where(cuts.element_sheet >= fronts, -1.0, 1.0)[:, None]

@@ -19,6 +19,9 @@ from .planes import Planes
 _MOST_CONTACTS = 200
 """Lines of contact in one plane beyond which they are left to be found by doubt."""
 
+_MOST_OUTLINES = 5_000
+"""Outlines of a scene beyond which lines of contact are looked for in runs alone."""
+
 _MOST_BREAKS = 12
 _CLOSE = 4.0
 """Height of an edge above a plane, in cells, up to which the light below changes over few of them."""
@@ -51,13 +54,40 @@ class Layout:
     def of(cls, grid: Grid, sheet: int, planes: Planes) -> Layout:
         """Layout that suits a run, what touches it and what passes close over it."""
         touched = _touched(grid, sheet, planes)
-        contacts = touched[~grid.along_border(touched)]
-        crossed = tuple(_crossed_cells(line, grid.shape) for line in contacts)
         passed = _passed(grid, sheet, planes)
         rows, columns = (
             _stretches(grid.shape[axis], touched[:, :, axis], passed[axis], grid.spacing[axis]) for axis in (0, 1)
         )
-        return cls(grid, contacts, crossed, (rows, columns))
+        return cls._with(grid, touched, (rows, columns))
+
+    @classmethod
+    def over(cls, sheet: int, count, axes: np.ndarray, low: np.ndarray, extent: np.ndarray, planes: Planes) -> Layout:
+        """So many cells ``(2,)`` over a sheet that is no run, with the lines where other surfaces touch it.
+
+        Parameters
+        ----------
+        sheet : int
+        count : (2,) int
+        axes : (2, 3) float
+            Of the sheet.
+        low, extent : (2,) float
+            Of the sheet along them [m].
+        planes : Planes
+        """
+        front = sheet % len(planes.sheet_surface)
+        normal = planes.sheet_normal[front]
+        height = planes.outlines[np.argmax(planes.outline_sheet == front), 0] @ normal
+        rows, columns = (int(c) for c in count)
+        grid = Grid(
+            0, rows, columns, low @ axes + height * normal, axes[0] * extent[0] / rows, axes[1] * extent[1] / columns
+        )
+        few = len(planes.outlines) <= _MOST_OUTLINES
+        return cls._with(grid, _touched(grid, sheet, planes) if few else np.zeros((0, 2, 2)), ([], []))
+
+    @classmethod
+    def _with(cls, grid: Grid, touched: np.ndarray, stretches: tuple[list, list]) -> Layout:
+        contacts = touched[~grid.along_border(touched)]
+        return cls(grid, contacts, tuple(_crossed_cells(line, grid.shape) for line in contacts), stretches)
 
     @cached_property
     def cut(self) -> np.ndarray:

@@ -18,7 +18,7 @@ _WIDEST = 1.0
 _GROWTH = 0.4
 """Growth of patches with the distance from the end of a stretch."""
 
-_FINEST, _NEAR_ENOUGH, _ASKEW = 16, 2e-3, 8
+_FINEST, _NEAR_ENOUGH, _ASKEW = 64, 2e-3, 16
 """Parts of a cell that are told apart at most where a line of contact cuts it; how much farther off than with the best
 number of parts the line may be, in cells; and parts where it runs askew."""
 
@@ -104,7 +104,7 @@ def make_patches(
     """Gather elements into patches of about equal area.
 
     Sheets that are one run of cells get patches as fine as their lattice says, other large ones an even grid. Small
-    ones (curved meshes) are gathered by place, facing and surface.
+    ones (curved meshes) are gathered by place, facing and surface. Where other surfaces touch a sheet patches end.
 
     Parameters
     ----------
@@ -173,12 +173,18 @@ def make_patches(
         while n.prod() > 4 * len(members):
             n = np.maximum(1, n // 2)
         origin[sheet], scale[sheet], shape[sheet], base[sheet] = low, n / extent, n, cells
-        cell = np.clip(np.floor((place - low) * scale[sheet]).astype(np.int64), 0, n - 1)
-        filled, patch = np.unique(cell[:, 0] * n[1] + cell[:, 1], return_inverse=True)
-        of_element[members] = count + patch.reshape(-1)
-        grid.append(count + _fill_cells(filled, n))
-        cells += int(n.prod())
-        count += len(filled)
+        layout = Layout.over(int(sheet), n, planes.sheet_axes[sheet % fronts], low, extent, planes)
+        in_cells = (place - low) * scale[sheet]
+        filled, patch = np.unique(layout.cell_of(in_cells), return_inverse=True)
+        patch, table = patch.reshape(-1), _fill_cells(filled, n)
+        if layout.cut.any():
+            finer = _fine_enough(layout)
+            patch, table = _by_side(layout, table.reshape(n), in_cells, finer)
+            shape[sheet], scale[sheet] = table.shape, table.shape / extent
+        of_element[members] = count + patch
+        grid.append(count + table.ravel())
+        cells += table.size
+        count += int(patch.max()) + 1
     if small:
         count = _gather_small(
             planes,
@@ -253,27 +259,35 @@ def _graded(
     return of_element, table, shares
 
 
-def _fine_enough(lattice: Layout) -> list[int]:
+def _fine_enough(layout: Layout) -> list[int]:
     """In how many parts cells have to be told apart along either axis, so that lines of contact run between them."""
-    step = np.abs(lattice.contacts[:, 1] - lattice.contacts[:, 0])
-    finer = []
-    for axis in (0, 1):
-        place = lattice.contacts[step[:, axis] < ON_LINE, 0, axis]
-        place = place[np.abs(place - np.rint(place)) > ON_LINE] % 1
-        askew = (step.min(axis=1) >= ON_LINE).any()
-        parts = np.arange(1, _FINEST + 1)
-        nearest = np.clip(np.rint(place[:, None] * parts), 1, np.maximum(parts - 1, 1)) / parts
-        off = np.abs(place[:, None] - nearest).max(axis=0, initial=_ASKEW / _FINEST if askew else 0.0)
-        finer.append(int(parts[np.flatnonzero(off <= off.min() + _NEAR_ENOUGH)[0]]) if len(place) else 1)
-        if askew:
-            finer[-1] = max(finer[-1], _ASKEW)
-    return finer if lattice.cut.size * math.prod(finer) <= _MOST_PLACES else [1, 1]
+    step = np.abs(layout.contacts[:, 1] - layout.contacts[:, 0])
+    askew = bool((step.min(axis=1) >= ON_LINE).any())
+    finest = _FINEST
+    while True:
+        finer = [_parts(layout.contacts[step[:, axis] < ON_LINE, 0, axis], askew, finest) for axis in (0, 1)]
+        if layout.cut.size * math.prod(finer) <= _MOST_PLACES or finest == 1:
+            return finer
+        finest //= 2
+
+
+def _parts(places: np.ndarray, askew: bool, finest: int) -> int:
+    """Parts of each cell, as few as do, between which lines at these places, in cells, run."""
+    places = places[np.abs(places - np.rint(places)) > ON_LINE] % 1
+    least = min(_ASKEW, finest) if askew else 1
+    if finest == 1 or not len(places):
+        return least
+    parts = np.arange(max(2, least), finest + 1)
+    off = np.abs(places[:, None] - np.clip(np.rint(places[:, None] * parts), 1, parts - 1) / parts).max(axis=0)
+    return int(parts[np.argmax(off <= off.min() + _NEAR_ENOUGH)])
 
 
 def _by_side(
     lattice: Layout, patch: np.ndarray, in_cells: np.ndarray, finer: list[int]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Patches of cells, divided by lines of contact: those of elements at places ``(k, 2)``, and of parts of cells."""
+    if max(finer) == 1:
+        return patch.ravel()[lattice.cell_of(in_cells)], patch
     along = [(np.arange(count * parts) + 0.5) / parts for count, parts in zip(patch.shape, finer, strict=True)]
     places = np.stack(np.meshgrid(*along, indexing="ij"), axis=2)
     every = np.concatenate([in_cells, places.reshape(-1, 2)])
