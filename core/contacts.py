@@ -21,8 +21,6 @@ _SLIVER = 1e-9
 _MOST_SHEETS = 300
 """Where more sheets than this have elements in no run, these are left whole."""
 
-_NONE = np.zeros(0, np.int64)
-
 
 def divided(cuts: Fracture, layouts: list[Layout], planes: Planes) -> Fracture:
     """Elements that lines of contact cut in triangles on one side each.
@@ -45,9 +43,9 @@ def divided(cuts: Fracture, layouts: list[Layout], planes: Planes) -> Fracture:
         loose[grid.elements] = False
     for sheet in _large(cuts, loose):
         found.append(_of_sheet(cuts.elements, np.flatnonzero(loose & (cuts.element_sheet == sheet)), sheet, planes))
-    owner, triangles = (np.concatenate(part) for part in zip((_NONE, np.zeros((0, 3, 3))), *found, strict=True))
-    if not len(owner):
+    if not found:
         return cuts
+    owner, triangles = (np.concatenate(part) for part in zip(*found, strict=True))
     first = np.diff(owner, prepend=-1) != 0
     elements = cuts.elements.copy()
     elements[owner[first]] = triangles[first]
@@ -78,10 +76,7 @@ def _of_sheet(elements: np.ndarray, mine: np.ndarray, sheet: int, planes: Planes
     owner, shapes, cut = mine, elements[mine], np.zeros(len(elements), bool)
     least = _SLIVER * np.bincount(mine, polygons.areas(shapes), len(elements))
     for line in layout.contacts:
-        begin, end = (layout.grid.place(place) for place in line)
-        way = end - begin
-        wall = polygons.cross(layout.grid.normal, way)
-        wall /= np.linalg.norm(wall)
+        begin, way, wall = _standing_on(layout, line)
         above = (shapes - begin) @ wall
         reach = 1e-9 * planes.size
         hit = (above.min(axis=1) < -reach) & (above.max(axis=1) > reach)
@@ -94,14 +89,29 @@ def _of_sheet(elements: np.ndarray, mine: np.ndarray, sheet: int, planes: Planes
         last = np.where(between & np.isfinite(at), at, -np.inf).max(axis=1)
         hit &= np.minimum(last, 1) - np.maximum(first, 0) > 1e-6
         cut[owner[hit]] = True
-        halves = [polygons.clip(shapes[hit], sign * wall, sign * float(wall @ begin)) for sign in (1.0, -1.0)]
-        shapes = polygons.joined([shapes[~hit], *halves])
-        owner = np.concatenate([owner[~hit], owner[hit], owner[hit]])
-        kept = polygons.areas(shapes) > least[owner]
-        shapes, owner = shapes[kept], owner[kept]
+        owner, shapes = _parted(owner, shapes, hit, wall, float(wall @ begin), least)
     owner, triangles, areas = _fans(owner[cut[owner]], shapes[cut[owner]], least)
     order = np.lexsort((-areas, owner))
     return owner[order], triangles[order]
+
+
+def _standing_on(layout: Layout, line: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where a line ``(2, 2)`` in cells begins, the way to its end [m], and the unit normal of a wall upon it."""
+    begin, end = (layout.grid.place(place) for place in line)
+    wall = polygons.cross(layout.grid.normal, end - begin)
+    return begin, end - begin, wall / np.linalg.norm(wall)
+
+
+def _parted(owner, shapes, some, normal, offset: float, least) -> tuple[np.ndarray, np.ndarray]:
+    """Shapes ``(k, v, 3)`` with their owners, some of them ``(k,)`` bool in two by the plane ``normal · x = offset``.
+
+    Parts of less than ``least`` of their owner are left out.
+    """
+    halves = [polygons.clip(shapes[some], sign * normal, sign * offset) for sign in (1.0, -1.0)]
+    shapes = polygons.joined([shapes[~some], *halves])
+    owner = np.concatenate([owner[~some], owner[some], owner[some]])
+    kept = polygons.areas(shapes) > least[owner]
+    return owner[kept], shapes[kept]
 
 
 def _fans(owner: np.ndarray, shapes: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -126,14 +136,8 @@ def _of_run(elements: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarra
     shapes = elements[owner]
     for line, crossed in zip(layout.contacts, layout.crossed, strict=True):
         mine = np.isin((owner - grid.first) // 2, crossed)
-        begin, end = (grid.place(place) for place in line)
-        wall = polygons.cross(grid.normal, end - begin)
-        wall /= np.linalg.norm(wall)
-        halves = [polygons.clip(shapes[mine], sign * wall, sign * float(wall @ begin)) for sign in (1.0, -1.0)]
-        shapes = polygons.joined([shapes[~mine], *halves])
-        owner = np.concatenate([owner[~mine], owner[mine], owner[mine]])
-        kept = polygons.areas(shapes) > least[owner]
-        shapes, owner = shapes[kept], owner[kept]
+        begin, _, wall = _standing_on(layout, line)
+        owner, shapes = _parted(owner, shapes, mine, wall, float(wall @ begin), least)
     owner, triangles, areas = _fans(owner, shapes, least)
     side = layout.sides(grid.in_cells(triangles.mean(axis=1)))
     cell = (owner - grid.first) // 2
