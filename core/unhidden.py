@@ -9,6 +9,7 @@ Arrays run over many pairs of a point and a polygon along their last axis, so th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,15 +53,12 @@ def form_factors(
     (n,) float
     """
     count, corners, edges = shapes.shape[2], shapes.shape[1], shapes.shape[1] + screens.shape[0] * screens.shape[2]
-    step = max(16, _VALUES // (edges * max(edges - corners, 1)))
-    found = np.empty(count)
     normal = np.broadcast_to(normal.reshape(3, -1), (3, count))
-    with np.errstate(divide="ignore", over="ignore"):
-        for first in range(0, count, step):
-            some = slice(first, first + step)
-            parts = shapes[..., some], screens[..., some], facing[:, some], normal[:, some]
-            found[some] = _along_contours(*parts, tolerance)
-    return found
+
+    def find(some: slice) -> np.ndarray:
+        return _along_contours(shapes[..., some], screens[..., some], facing[:, some], normal[:, some], tolerance)
+
+    return _some_at_a_time(find, count, edges * max(edges - corners, 1))
 
 
 def form_factors_within(
@@ -84,14 +82,22 @@ def form_factors_within(
     (n,) float
     """
     count = shapes.shape[2]
-    step = max(16, _VALUES // (shapes.shape[1] * windows.shape[1]))
-    found = np.empty(count)
     normal = np.broadcast_to(normal.reshape(3, -1), (3, count))
+
+    def find(some: slice) -> np.ndarray:
+        edges = _Edges.of(shapes[..., some], windows[None, ..., some], facing[None, some], tolerance)
+        return edges.along_what_both_share(normal[:, some])
+
+    return _some_at_a_time(find, count, shapes.shape[1] * windows.shape[1])
+
+
+def _some_at_a_time(find: Callable[[slice], np.ndarray], count: int, values: int) -> np.ndarray:
+    """(count,) float: what is found for some pairs of so many ``values`` each at a time."""
+    step, found = max(16, _VALUES // values), np.empty(count)
     with np.errstate(divide="ignore", over="ignore"):
         for first in range(0, count, step):
             some = slice(first, first + step)
-            edges = _Edges.of(shapes[..., some], windows[None, ..., some], facing[None, some], tolerance)
-            found[some] = edges.along_what_both_share(normal[:, some])
+            found[some] = find(some)
     return found
 
 
