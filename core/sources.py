@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from threading import Lock
 
 import numpy as np
 
@@ -88,6 +89,14 @@ def gather_sources(
 
 
 @dataclass(frozen=True, eq=False)
+class _Family:
+    """Ways of receivers of several planes by the same mirrors: one thread looks, and from all of them."""
+
+    paths: list[_Path] = field(default_factory=list)
+    lock: Lock = field(default_factory=Lock)
+
+
+@dataclass(frozen=True, eq=False)
 class _Path:
     """A way on which all receivers of a plane look: straight on, or by some mirrors.
 
@@ -107,8 +116,8 @@ class _Path:
         Largest product of the reflectances so far.
     depth : int
         Mirrors so far.
-    family : list
-        Ways of receivers of other planes by the same mirrors, and this one: what is looked for is looked for from all.
+    family : _Family
+        This way, and those of receivers of other planes.
     """
 
     bright: Bright
@@ -119,7 +128,7 @@ class _Path:
     blockers: Blockers
     throughput: float
     depth: int
-    family: list[_Path] = field(default_factory=list)
+    family: _Family
     _sources: dict[int, tuple] = field(default_factory=dict)
     _apertures: dict[int, np.ndarray] = field(default_factory=dict)
     _mirrored: dict[tuple[int, float], _Path] = field(default_factory=dict)
@@ -137,17 +146,17 @@ class _Path:
 
     def sources(self, number: int) -> tuple[np.ndarray, Standing]:
         """Of a group: which of its sources may be seen (s,), what of them, and what may stand before them."""
-        if number not in self._sources:
-            limits = [
-                (np.array([half.normal for half in halves]), np.array([half.offset for half in halves]))
-                for halves in zip(*(path.limits for path in self.family), strict=True)
-            ]
-            places = Places(
-                np.stack([path.corners for path in self.family]), limits, [path.blockers for path in self.family]
-            )
-            found = self.bright.groups[number].shining.standing(places)
-            for path, one in zip(self.family, found, strict=True):
-                path._sources[number] = one
+        with self.family.lock:
+            if number not in self._sources:
+                paths = self.family.paths
+                limits = [
+                    (np.array([half.normal for half in halves]), np.array([half.offset for half in halves]))
+                    for halves in zip(*(path.limits for path in paths), strict=True)
+                ]
+                places = Places(np.stack([path.corners for path in paths]), limits, [path.blockers for path in paths])
+                found = self.bright.groups[number].shining.standing(places)
+                for path, one in zip(paths, found, strict=True):
+                    path._sources[number] = one
         return self._sources[number]
 
     def aperture(self, mirror: int) -> np.ndarray:
@@ -166,17 +175,18 @@ class _Path:
         """The way on by one more mirror."""
         outlines = self.bright.outlines
         key = mirror, float(ahead.normal @ outlines.normals[mirror])
-        if key not in self._mirrored:
-            family: list[_Path] = []
-            for path in self.family:
-                aperture = path.aperture(mirror)
-                before = path.corners @ ahead.normal - ahead.offset > outlines.tolerance
-                if len(aperture) and before.any():
-                    family.append(path._by(mirror, ahead, aperture, throughput, family))
-                    path._mirrored[key] = family[-1]
+        with self.family.lock:
+            if key not in self._mirrored:
+                family = _Family()
+                for path in self.family.paths:
+                    aperture = path.aperture(mirror)
+                    before = path.corners @ ahead.normal - ahead.offset > outlines.tolerance
+                    if len(aperture) and before.any():
+                        family.paths.append(path._by(mirror, ahead, aperture, throughput, family))
+                        path._mirrored[key] = family.paths[-1]
         return self._mirrored[key]
 
-    def _by(self, mirror: int, ahead: HalfSpace, aperture, throughput: float, family: list[_Path]) -> _Path:
+    def _by(self, mirror: int, ahead: HalfSpace, aperture, throughput: float, family: _Family) -> _Path:
         outlines = self.bright.outlines
         normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
         there = between(outlines, self.corners, aperture, [ahead, *self.limits], skip=mirror)
@@ -248,11 +258,11 @@ class SourceView:
         found = []
         together = max(1, _PAIRS // max(1, len(bright.sources) * len(bright.outlines.vertices)))
         for first in range(0, len(planes), together):
-            family: list[_Path] = []
+            family = _Family()
             for corners, normal in planes[first : first + together]:
                 horizon = HalfSpace(normal, float(normal @ corners[0]))
-                family.append(_Path(bright, corners, horizon, None, (), Blockers.none(), 1.0, 0, family))
-            found += [cls(bright, path) for path in family]
+                family.paths.append(_Path(bright, corners, horizon, None, (), Blockers.none(), 1.0, 0, family))
+            found += [cls(bright, path) for path in family.paths]
         return found
 
     def add(self, points, rows, received: Received, checkpoint: Callable[[], None] = lambda: None) -> None:

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import luzespecular as luz
-from luzespecular import polygons
+from luzespecular import polygons, sources
 from luzespecular.bright import Source, even_illuminance
 from luzespecular.sources import gather_sources
 from luzespecular.tracing import ChainLimits
@@ -304,6 +304,22 @@ def test_luminous_mirrors_of_a_box_can_be_cancelled_soon():
         with pytest.raises(luz.Cancelled):
             work(lambda fraction, stage: time.perf_counter() - begin < 0.3)  # noqa: B023
         assert time.perf_counter() - begin < 2.3
+
+
+def test_threads_that_need_the_same_images_wait_for_each_other(monkeypatch):
+    """Ways by a mirror are looked for from all planes at once, by one thread; no other may see them half made."""
+
+    def slowly(*args):
+        time.sleep(2e-3)
+        return by(*args)
+
+    by = sources._Path._by
+    monkeypatch.setattr(sys.modules["luzespecular.solve"], "_SOURCE_TASK", 8)
+    alone, together = (prepare_coarse(mirror_box(), elements=60, bands=4, threads=n).solve(DARK) for n in (1, 2))
+    np.testing.assert_array_equal(together.illuminance, alone.illuminance)
+    monkeypatch.setattr(sources._Path, "_by", slowly)
+    beside = prepare_coarse(mirror_box(), elements=60, bands=4, threads=4).solve(DARK)
+    np.testing.assert_array_equal(beside.illuminance, alone.illuminance)
 
 
 def test_images_by_many_mirrors_come_by_the_globe():
