@@ -22,6 +22,11 @@ def pick(matrix: np.ndarray, row, column) -> np.ndarray:
     return matrix[row, column]
 
 
+def runs(first, count) -> np.ndarray:
+    """(sum of counts,) int: from each ``first`` (s,) on so many numbers in a row."""
+    return np.arange(int(np.sum(count))) + np.repeat(first - np.cumsum(count) + count, count)
+
+
 def onto(vectors: np.ndarray, axis) -> np.ndarray:
     """(n,) inner products of vectors ``(n, 3)`` with one: BLAS would wake threads for it that then wait for work."""
     return vectors[:, 0] * axis[0] + vectors[:, 1] * axis[1] + vectors[:, 2] * axis[2]

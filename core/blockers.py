@@ -82,44 +82,66 @@ class Blockers:
         return height
 
 
-def between(outlines: Outlines, corners, shapes, half_spaces: list[HalfSpace], skip: int = -1) -> Blockers:
-    """Outlines, cut to the half-spaces, that may stand between some receivers of one plane and some of the shapes.
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where receivers of some planes are, or their images, and what all that they see lies within.
+
+    Attributes
+    ----------
+    corners : (p, c, 3) float
+        Between which the receivers of each plane are.
+    limits : list of ((p, 3) float, (p,) float)
+        Normals and offsets of half-spaces: the receivers' horizons, and what is behind the last mirror.
+    """
+
+    corners: np.ndarray
+    limits: list[tuple[np.ndarray, np.ndarray]]
+
+    def __len__(self) -> int:
+        return len(self.corners)
+
+    def take(self, index) -> Places:
+        """Some of them."""
+        return Places(self.corners[index], [(normals[index], offsets[index]) for normals, offsets in self.limits])
+
+    def cut(self, shapes: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """Parts of polygons ``(m, v, 3)`` within the limits of places ``(m,)``."""
+        for normals, offsets in self.limits:
+            shapes = polygons.clip(shapes, normals[place], offsets[place])
+        return shapes
+
+    def above(self, shapes: np.ndarray, tolerance: float) -> np.ndarray:
+        """(p, m) bool: polygons ``(m, v, 3)`` that are not wholly outside of any limit."""
+        found = np.ones((len(self.corners), len(shapes)), bool)
+        for normals, offsets in self.limits:
+            found &= (shapes @ normals.T - offsets > tolerance).any(axis=1).T
+        return found
+
+
+def between(outlines: Outlines, places: Places, shapes, skip: int) -> tuple[Blockers, np.ndarray]:
+    """Outlines, cut to the limits, that may stand between receivers and a shape; and whose these are (k,), ascending.
 
     Parameters
     ----------
     outlines : Outlines
-    corners : (c, 3) float
-        Between which the receivers are.
-    shapes : (s, v, 3) float
-    half_spaces : list of HalfSpace
-        That all light is within; the receivers' horizon among them.
+    places : Places
+    shapes : (p, v, 3) float
+        One for each place.
     skip : int
         An outline that is none.
     """
     tolerance = outlines.tolerance
-    mask = np.ones(len(outlines.vertices), bool)
-    for half in half_spaces:
-        mask &= above(outlines.vertices, half, tolerance)
-    if skip >= 0:
-        mask[skip] = False
-    index = np.flatnonzero(mask)
-    if not len(index):
-        return Blockers.none()
-    normals, offsets = outlines.normals[index], outlines.offsets[index]
-    near = corners @ normals.T - offsets
-    far = shapes.reshape(-1, 3) @ normals.T - offsets
-    apart = (near.max(axis=0) > tolerance) & (far.min(axis=0) < -tolerance)
-    apart |= (near.min(axis=0) < -tolerance) & (far.max(axis=0) > tolerance)
-    kept = index[apart]
-    return _cut(Blockers.of(outlines, kept, np.full(len(kept), -1)), half_spaces, tolerance)
-
-
-def _cut(blockers: Blockers, half_spaces: list[HalfSpace], tolerance: float) -> Blockers:
-    """What of blockers lies within half-spaces."""
-    parts = blockers.vertices
-    for half in half_spaces:
-        parts = polygons.clip(parts, half.normal, half.offset)
-    return replace(blockers, vertices=parts).take(polygons.areas(parts) > tolerance**2)
+    near = places.corners @ outlines.normals.T - outlines.offsets
+    far = shapes @ outlines.normals.T - outlines.offsets
+    apart = (near.max(axis=1) > tolerance) & (far.min(axis=1) < -tolerance)
+    apart |= (near.min(axis=1) < -tolerance) & (far.max(axis=1) > tolerance)
+    apart[:, skip] = False
+    apart &= places.above(outlines.vertices, tolerance)
+    place, index = np.nonzero(apart)
+    parts = places.cut(outlines.vertices[index], place)
+    wide = np.flatnonzero(polygons.areas(parts) > tolerance**2)
+    blockers = replace(Blockers.of(outlines, index, np.full(len(index), -1)), vertices=parts)
+    return blockers.take(wide), place[wide]
 
 
 def above(vertices, half: HalfSpace, tolerance: float) -> np.ndarray:

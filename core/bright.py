@@ -121,8 +121,8 @@ class _Group:
     outlines: Outlines
 
     def heights(self, points) -> np.ndarray:
-        """(s, r) float: of points ``(r, 3)`` before the sources' planes."""
-        return (self.normals @ points.T - self.offsets[:, None])[self.plane]
+        """(p, r) float: of points ``(r, 3)`` before the planes."""
+        return self.normals @ points.T - self.offsets[:, None]
 
     @cached_property
     def spheres(self) -> tuple[np.ndarray, np.ndarray]:
@@ -135,13 +135,14 @@ class _Group:
         """(s,) float [lm]."""
         return self.exitance * polygons.areas(self.polygons)
 
-    def most(self, points, height) -> np.ndarray:
-        """(s, r) float: no less than what points at heights (s, r) before the planes get [lx]."""
+    def most(self, source, points, height) -> np.ndarray:
+        """(n,) float: no less than what points ``(n, 3)`` at heights (n,) before sources (n,) get of these [lx]."""
         centres, radii = self.spheres
         height = np.maximum(height, 1e-100)
-        near = np.maximum(np.linalg.norm(points - centres[:, None], axis=2) - radii[:, None], height)
-        most = self.fluxes[:, None] * (height / near) / (np.pi * near**2)
-        return np.minimum(most, self.exitance[:, None])
+        away = points - centres[source]
+        near = np.maximum(np.sqrt(np.einsum("nc,nc->n", away, away)) - radii[source], height)
+        most = self.fluxes[source] * (height / near) / (np.pi * near**2)
+        return np.minimum(most, self.exitance[source])
 
     @cached_property
     def brightest(self) -> list[float]:

@@ -69,6 +69,11 @@ class Outlines:
         return np.arange(len(self.vertices)) if self.facets is None else self.facets.large
 
     @cached_property
+    def transparent(self) -> np.ndarray:
+        """(o,) bool: outlines that light passes straight through."""
+        return np.array([m.is_transparent for m in self.materials], bool)
+
+    @cached_property
     def back_counts(self) -> np.ndarray:
         """(o,) bool: whether light on the back goes anywhere, onto a receiver or on by a mirror."""
         return self.two_sided | np.array([m.reflects_both_sides for m in self.materials], bool)

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from . import polygons
 from .outlines import Outlines
+
+_EVEN = 0.2
+_EVEN_TO = 0.003
+"""By how much shares of light at corners may differ from that in the middle: of it, and more by so much."""
+
+_MOST_HALVINGS = 8
+
+_OF_CORNERS = 0.3
+"""Their part in a mean over a polygon, the rest is the middle's: by a quarter for triangles, by a third for rectangles
+the mean of a quadratic function is exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,11 +182,70 @@ def past_blocker(outlines: Outlines, polygon, outline: int, seen: Shapes, planes
         row, which, shape, weight = row[some], which[some], inside[some], weight[some]
     if material.is_transparent:
         plane = polygons.newell_normal(polygon)
-        centre = shape.mean(axis=1)
-        length = np.linalg.norm(centre, axis=1) * np.linalg.norm(plane)
-        through = material.transmittance_at((centre @ plane) / np.maximum(length, 1e-300))
-        kept.append(Shapes(row, which, shape.transpose(2, 1, 0), weight * through))
+        plane /= np.linalg.norm(plane)
+
+        def through(directions: np.ndarray) -> np.ndarray:
+            length = np.maximum(np.linalg.norm(directions, axis=1), 1e-300)
+            return material.transmittance_at((directions @ plane) / length)
+
+        kept.append(even_parts(Shapes(row, which, shape.transpose(2, 1, 0), weight), through)[0])
     return kept
+
+
+def even_parts(seen: Shapes, share: Callable[[np.ndarray], np.ndarray]) -> tuple[Shapes, np.ndarray]:
+    """Shapes in parts of which a share of light comes that is about the same all over each.
+
+    Parameters
+    ----------
+    seen : Shapes
+    share : callable
+        Of light along directions ``(n, 3)`` of any length; (n,) float.
+
+    Returns
+    -------
+    parts : Shapes
+        Weighed with the share.
+    of : (m,) int
+        Which of the shapes each is a part of.
+    """
+    shapes, of = seen.shape.transpose(2, 1, 0), np.arange(len(seen.row))
+    found: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+    for halving in range(_MOST_HALVINGS + 1):
+        middle = share(_mean_directions(shapes))
+        corners = share(shapes.reshape(-1, 3)).reshape(shapes.shape[:2])
+        apart = np.abs(corners - middle[:, None]).max(axis=1, initial=0.0)
+        uneven = (apart > _EVEN * middle + _EVEN_TO) & (halving < _MOST_HALVINGS)
+        own = (shapes != polygons.following(shapes)).any(axis=2)  # each corner once
+        mean = (corners * own).sum(axis=1) / np.maximum(own.sum(axis=1), 1)
+        mean = (1 - _OF_CORNERS) * middle + _OF_CORNERS * np.where(own.any(axis=1), mean, middle)
+        found.append((shapes[~uneven], of[~uneven], mean[~uneven]))
+        if not uneven.any():
+            break
+        shapes, of = _halved(shapes[uneven]), np.tile(of[uneven], 2)
+        wide = has_area(shapes)
+        shapes, of = shapes[wide], of[wide]
+    of, mean = (np.concatenate([part[k] for part in found]) for k in (1, 2))
+    shape = np.ascontiguousarray(polygons.joined([part for part, _, _ in found]).transpose(2, 1, 0))
+    return Shapes(seen.row[of], seen.polygon[of], shape, seen.weight[of] * mean), of
+
+
+def _mean_directions(shapes: np.ndarray) -> np.ndarray:
+    """(m, 3) float, of any length: directions to polygons ``(m, v, 3)``, means over the solid angle (Lambert)."""
+    after = polygons.following(shapes)
+    pole = polygons.cross(shapes, after)
+    length = np.sqrt((pole * pole).sum(axis=2))
+    angle = np.arctan2(length, (shapes * after).sum(axis=2))
+    return (pole * (angle / np.where(length > 0, length, 1.0))[:, :, None]).sum(axis=1)
+
+
+def _halved(shapes: np.ndarray) -> np.ndarray:
+    """(2 m, v, 3): both sides of convex polygons ``(m, v, 3)``, cut through the middle across their longest reach."""
+    centre = polygons.centroids(shapes)
+    reach = shapes - centre[:, None]
+    farthest = np.argmax(np.einsum("mvc,mvc->mv", reach, reach), axis=1)
+    along = reach[np.arange(len(shapes)), farthest]
+    at = np.einsum("mc,mc->m", along, centre)
+    return polygons.joined([polygons.clip(shapes, along, at), polygons.clip(shapes, -along, -at)])
 
 
 def joined(parts: list[Shapes]) -> Shapes:

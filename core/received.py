@@ -50,7 +50,7 @@ class Received:
             Exitance, times what mirrors and panes let through [lm/m²].
         shapes : (3, v, n) float, padded
             Relative to the receivers.
-        normal : (3,) float, unit
+        normal : (3, n) or (3,) float, unit
             Of the receivers.
         screens : (k, 3, w, n) float, optional
             Before the shapes: see `unhidden.form_factors`.
@@ -59,7 +59,7 @@ class Received:
         if not len(row):
             return
         number = 0 if screens is None else len(screens)
-        normals = np.broadcast_to(normal[:, None], (3, len(row)))
+        normals = np.broadcast_to(normal.reshape(3, -1), (3, len(row)))
         parts = (row, weight, normals, shapes) if screens is None else (row, weight, normals, shapes, facing, screens)
         self._waiting.setdefault((number, shapes.shape[1]), []).append(parts)
         self._held += len(row) * (1 + number)
@@ -71,29 +71,32 @@ class Received:
 
         Parameters
         ----------
-        row, weight, normal
+        row, weight
             As of `add`.
         seen : SeenShapes
         counts : (s,) int
             Corners of its polygons.
+        normal : (3, n) float, unit
+            Of the receivers.
         """
         if seen.windows is not None and seen.cut.any():
             whole, cut = np.flatnonzero(~seen.cut), np.flatnonzero(seen.cut)
             some, windows = seen.take(cut), seen.windows
             screens = windows.corners.take(some.row, axis=2), windows.facing.take(some.row)
-            factors = unhidden.form_factors_within(some.shape, *screens, normal[:, None], self._tolerance)
+            of_cut = normal.take(cut, axis=1)
+            factors = unhidden.form_factors_within(some.shape, *screens, of_cut, self._tolerance)
             self._sum(row[cut], weight[cut], factors)
-            row, weight, seen = row[whole], weight[whole], seen.take(whole)
+            row, weight, seen, normal = row[whole], weight[whole], seen.take(whole), normal.take(whole, axis=1)
         corners = counts[seen.polygon]
         for count in np.flatnonzero(np.bincount(corners)).tolist():
             mine = np.flatnonzero(corners == count)
             some = replace(seen.take(mine), corners=seen.corners[:, :count])
             if len(mine) < _MANY:
-                self.add(row[mine], weight[mine], some.shape, normal)
+                self.add(row[mine], weight[mine], some.shape, normal.take(mine, axis=1))
                 continue
             for first in range(0, len(mine), _TOGETHER):
                 part = slice(first, first + _TOGETHER)
-                factors = unhidden.whole_form_factors(some.take(part).shape, normal[:, None])
+                factors = unhidden.whole_form_factors(some.take(part).shape, normal.take(mine[part], axis=1))
                 self._sum(row[mine[part]], weight[mine[part]], factors)
 
     def illuminance(self) -> np.ndarray:

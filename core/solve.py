@@ -16,7 +16,7 @@ from .form_factors import trusted
 from .gather import Targets
 from .geometry import Geometry
 from .nodes import Nodes, settled
-from .parallel import chunks_of_receivers, run_parallel
+from .parallel import run_parallel
 from .penumbra import trace_disc
 from .received import Received
 from .result import Result
@@ -37,9 +37,9 @@ _CLOSED = 1e-3
 _FINEST = 1e-6
 """Change left to come, over all light, below which products are summed in float64."""
 
-_SOURCE_ROWS = 1024
-_SOURCE_TASK = 4096
-"""Receivers that one thread looks from at a time: many small steps are quicker in one thread than in two."""
+_SOURCE_ROWS = 256
+_SOURCE_PAIRS = 32_000
+"""Receivers, and pairs of these and a source, that one thread looks at together: at least, and about."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,34 +302,31 @@ def _gather_bright(
     geometry = transfer.geometry
     found = np.zeros(0)
     done = 0.0
-    bright = Bright(geometry.outlines, sources, transfer.limits)
     planes = transfer.sheet_corners
-    views = dict(zip(planes, SourceView.of(bright, list(planes.values())), strict=True))
+    views = SourceView.of(Bright(geometry.outlines, sources, transfer.limits), list(planes.values()))
+    number = np.zeros(max(planes, default=0) + 1, np.int64)
+    number[list(planes)] = np.arange(len(planes))
+    together = views[0].planes
 
     def evaluate(nodes: Nodes, first: int) -> np.ndarray:
         nonlocal found, done
         found = np.concatenate([found, np.zeros(len(nodes.points) - first)])
-        members = np.arange(first, len(nodes.points))
         begun, share = done, 0.6 * (1.0 - done)
-        sheets = nodes.sheet[members]
-        chunks = chunks_of_receivers(nodes.points[members], sheets, geometry.planes, _SOURCE_ROWS)
+        plane = number[nodes.sheet[first:]]
 
-        def work(together: list[np.ndarray], checkpoint) -> None:
-            rows = members[np.concatenate(together)]
+        def work(task: tuple[int, np.ndarray], checkpoint) -> None:
+            view, mine = task
+            rows = first + mine
             received = Received(len(rows), geometry.outlines.tolerance)
-            first = 0
-            for chunk in together:
-                some = slice(first, first + len(chunk))
-                views[int(sheets[chunk[0]])].add(
-                    nodes.points[rows[some]], np.arange(len(rows))[some], received, checkpoint
-                )
-                first += len(chunk)
+            views[view].add(
+                nodes.points[rows], plane[mine] - view * together, np.arange(len(rows)), received, checkpoint
+            )
             found[rows] = received.illuminance()
 
         def report(part: float) -> None:
             progress(begun + share * part, "interreflection")
 
-        run_parallel(work, _handfuls(chunks, _SOURCE_TASK), transfer.threads, report)
+        run_parallel(work, _handfuls(plane, together, len(sources)), transfer.threads, report)
         done = begun + share
         # there is other, even light as well: where this is faint, its unevenness matters little
         return (found + found.mean())[:, None]
@@ -339,16 +336,15 @@ def _gather_bright(
     return nodes.on_elements(found) + _of_rows(transfer, transfer.deep_rows, by_many_mirrors)
 
 
-def _handfuls(chunks: list[np.ndarray], most: int) -> list[list[np.ndarray]]:
-    """Chunks by handfuls of at most so many receivers."""
-    handfuls: list[list[np.ndarray]] = []
-    room = 0
-    for chunk in chunks:
-        if len(chunk) > room:
-            handfuls.append([])
-            room = most
-        handfuls[-1].append(chunk)
-        room -= len(chunk)
+def _handfuls(plane: np.ndarray, together: int, sources: int) -> list[tuple[int, np.ndarray]]:
+    """Receivers of planes ``(r,)``, by planes: so many of these make a view; which view, and some receivers (k,)."""
+    order = np.argsort(plane, kind="stable")
+    view = plane[order] // together
+    most = max(_SOURCE_ROWS, _SOURCE_PAIRS // sources)
+    handfuls = []
+    for mine in np.split(order, np.flatnonzero(np.diff(view)) + 1):
+        parts = -(-len(mine) // most)
+        handfuls += [(int(plane[some[0]]) // together, some) for some in np.array_split(mine, parts) if len(some)]
     return handfuls
 
 

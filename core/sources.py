@@ -8,21 +8,22 @@ mirrored scene, inside the mirror's outline.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import Lock
 
 import numpy as np
 
 from . import polygons
-from .blockers import Blockers, above, between, frame
+from .arrays import pick
+from .blockers import Blockers, Places, above, between, frame
 from .bright import FAINT, Bright, Source
 from .materials import Material
 from .outlines import Outlines
 from .pieces import SeenShapes, Windows, tightened
 from .projection import HalfSpace, reflect, reflect_points
 from .received import Received
-from .standing import Places, Standing, light_past
+from .standing import Receivers, Standing, in_order, light_past
 from .tracing import ChainLimits
 from .unhidden import whole_form_factors
 
@@ -84,150 +85,151 @@ def gather_sources(
     received = Received(len(points), outlines.tolerance)
     normal = np.asarray(normal, float)
     (view,) = SourceView.of(Bright(outlines, sources, limits, faint), [(frame(points, normal), normal)])
-    view.add(points, np.arange(len(points)), received, checkpoint)
+    view.add(points, np.zeros(len(points), int), np.arange(len(points)), received, checkpoint)
     return received.illuminance()
 
 
 @dataclass(frozen=True, eq=False)
-class _Family:
-    """Ways of receivers of several planes by the same mirrors: one thread looks, and from all of them."""
-
-    paths: list[_Path] = field(default_factory=list)
-    lock: Lock = field(default_factory=Lock)
-
-
-@dataclass(frozen=True, eq=False)
 class _Path:
-    """A way on which all receivers of a plane look: straight on, or by some mirrors.
+    """A way on which receivers of some planes look: straight on, or by some mirrors.
 
     Attributes
     ----------
     bright : Bright
-    corners : (c, 3) float
-        Between which the receivers lie, or their images.
-    horizon : HalfSpace
-        Above the receivers' own plane, mirrored likewise.
+    corners : (p, c, 3) float
+        Between which the receivers of each plane lie, or their images.
+    horizons : (p, 3) float
+        Normals of the receivers' own planes, mirrored likewise.
+    levels : (p,) float
+        Offsets of these planes.
     beyond : HalfSpace or None
         Behind the last mirror, where they look.
     mirrors : tuple of Mirrored
     blockers : Blockers
         What lies on the way so far.
+    at : (k,) int, ascending
+        From which of the planes.
     throughput : float
         Largest product of the reflectances so far.
     depth : int
         Mirrors so far.
-    family : _Family
-        This way, and those of receivers of other planes.
+    lock : Lock
+        One thread looks on, others wait: what they share is never seen half made.
     """
 
     bright: Bright
     corners: np.ndarray
-    horizon: HalfSpace
+    horizons: np.ndarray
+    levels: np.ndarray
     beyond: HalfSpace | None
     mirrors: tuple[Mirrored, ...]
     blockers: Blockers
+    at: np.ndarray
     throughput: float
     depth: int
-    family: _Family
-    _sources: dict[int, tuple] = field(default_factory=dict)
-    _apertures: dict[int, np.ndarray] = field(default_factory=dict)
+    lock: Lock = field(default_factory=Lock)
+    _sources: dict[int, Standing] = field(default_factory=dict)
+    _apertures: dict[int, _Apertures] = field(default_factory=dict)
     _mirrored: dict[tuple[int, float], _Path] = field(default_factory=dict)
 
-    @property
-    def limits(self) -> list[HalfSpace]:
-        """What all that is seen lies within."""
-        return [self.horizon] if self.beyond is None else [self.horizon, self.beyond]
+    @cached_property
+    def places(self) -> Places:
+        """Where receivers are, and what all that they see lies within."""
+        limits = [(self.horizons, self.levels)]
+        if self.beyond is not None:
+            count = len(self.levels)
+            limits.append((np.tile(self.beyond.normal, (count, 1)), np.full(count, self.beyond.offset)))
+        return Places(self.corners, limits)
 
-    def clipped(self, shapes) -> np.ndarray:
-        """(s, u, 3) float: parts of polygons ``(s, v, 3)`` within the limits."""
-        for half in self.limits:
-            shapes = polygons.clip(shapes, half.normal, half.offset)
-        return shapes
-
-    def sources(self, number: int) -> tuple[np.ndarray, Standing]:
-        """Of a group: which of its sources may be seen (s,), what of them, and what may stand before them."""
-        with self.family.lock:
+    def sources(self, number: int) -> Standing:
+        """What of a group's sources may be seen, and what may stand before them."""
+        with self.lock:
             if number not in self._sources:
-                paths = self.family.paths
-                limits = [
-                    (np.array([half.normal for half in halves]), np.array([half.offset for half in halves]))
-                    for halves in zip(*(path.limits for path in paths), strict=True)
-                ]
-                places = Places(np.stack([path.corners for path in paths]), limits, [path.blockers for path in paths])
-                found = self.bright.groups[number].shining.standing(places)
-                for path, one in zip(paths, found, strict=True):
-                    path._sources[number] = one
+                shining = self.bright.groups[number].shining
+                self._sources[number] = shining.standing(self.places, self.blockers, self.at)
         return self._sources[number]
 
-    def aperture(self, mirror: int) -> np.ndarray:
-        """(n, u, 3) float: what of a mirror may be seen, one polygon or none."""
-        found = self._apertures.get(mirror)
-        if found is None:
-            outlines = self.bright.outlines
-            found = outlines.vertices[mirror][None]
-            if self.beyond is not None and not above(found, self.beyond, outlines.tolerance)[0]:
-                found = found[:0]  # the mirror just used, or one in its plane
-            found = self.clipped(found)
-            found = self._apertures[mirror] = tightened(found[polygons.areas(found) > outlines.tolerance**2])[0]
-        return found
+    def aperture(self, mirror: int) -> _Apertures:
+        """What of a mirror may be seen."""
+        if mirror not in self._apertures:
+            outlines, count = self.bright.outlines, len(self.levels)
+            found, place = outlines.vertices[[mirror] * count], np.arange(count)
+            if self.beyond is not None and not above(found[:1], self.beyond, outlines.tolerance)[0]:
+                found, place = found[:0], place[:0]  # the mirror just used, or one in its plane
+            found = self.places.cut(found, place)
+            wide = np.flatnonzero(polygons.areas(found) > outlines.tolerance**2)
+            number = np.full(count, -1)
+            number[place[wide]] = np.arange(len(wide))
+            self._apertures[mirror] = _Apertures(tightened(found[wide])[0], place[wide], number)
+        return self._apertures[mirror]
 
     def mirrored(self, mirror: int, ahead: HalfSpace, throughput: float) -> _Path:
         """The way on by one more mirror."""
-        outlines = self.bright.outlines
-        key = mirror, float(ahead.normal @ outlines.normals[mirror])
-        with self.family.lock:
+        key = mirror, float(ahead.normal @ self.bright.outlines.normals[mirror])
+        with self.lock:
             if key not in self._mirrored:
-                family = _Family()
-                for path in self.family.paths:
-                    aperture = path.aperture(mirror)
-                    before = path.corners @ ahead.normal - ahead.offset > outlines.tolerance
-                    if len(aperture) and before.any():
-                        family.paths.append(path._by(mirror, ahead, aperture, throughput, family))
-                        path._mirrored[key] = family.paths[-1]
+                self._mirrored[key] = self._by(mirror, ahead, throughput)
         return self._mirrored[key]
 
-    def _by(self, mirror: int, ahead: HalfSpace, aperture, throughput: float, family: _Family) -> _Path:
-        outlines = self.bright.outlines
+    def _by(self, mirror: int, ahead: HalfSpace, throughput: float) -> _Path:
+        outlines, aperture = self.bright.outlines, self.aperture(mirror)
         normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
-        there = between(outlines, self.corners, aperture, [ahead, *self.limits], skip=mirror)
+        before = (self.corners @ ahead.normal - ahead.offset > outlines.tolerance).any(axis=1)[aperture.place]
+        place = aperture.place[before]
+        limits = [(np.tile(ahead.normal, (len(place), 1)), np.full(len(place), ahead.offset))]
+        places = self.places.take(place)
+        places = replace(places, limits=limits + places.limits)
+        there, at = between(outlines, places, aperture.shapes[before], mirror)
+        blockers, at = in_order(self.blockers, self.at, there, place[at])
         passed = [Mirrored(m.material, reflect(m.normal, normal)) for m in self.mirrors]
+        horizons = reflect(self.horizons, normal)
+        origins = reflect_points(self.horizons * self.levels[:, None], normal, offset)
         return _Path(
             self.bright,
             reflect_points(self.corners, normal, offset),
-            self.horizon.reflected(normal, offset),
+            horizons,
+            np.einsum("pc,pc->p", horizons, origins),
             ahead,
             (*passed, Mirrored(outlines.materials[mirror], normal)),
-            self.blockers.joined(there).reflected(normal, offset),
+            blockers.reflected(normal, offset),
+            at,
             throughput,
             self.depth + 1,
-            family,
         )
 
 
 @dataclass(frozen=True, eq=False)
-class _Leg:
+class _Apertures:
+    """What receivers of some planes may see of a mirror.
+
+    Attributes
+    ----------
+    shapes : (m, v, 3) float, padded
+    place : (m,) int
+        Whose each is.
+    number : (p,) int
+        Which of the shapes is whose; -1: none.
+    """
+
+    shapes: np.ndarray
+    place: np.ndarray
+    number: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class _Leg(Receivers):
     """Where receivers look from on a path: themselves, or their image after some mirrors.
 
     Attributes
     ----------
-    points : (r, 3) float
-    rows : (r,) int
-        Numbers of the receivers.
     window : (r, v, 3) float or None
         What each receiver sees of the last mirror through all before it, relative to the receiver.
     opening : (r,) float or None
         Form factor to the window.
     """
 
-    points: np.ndarray
-    rows: np.ndarray
     window: np.ndarray | None = None
     opening: np.ndarray | None = None
-
-    @cached_property
-    def places(self) -> np.ndarray:
-        """(3, r) float: the points."""
-        return np.ascontiguousarray(self.points.T)
 
     @cached_property
     def windows(self) -> Windows | None:
@@ -241,7 +243,7 @@ class _Leg:
 
 @dataclass(frozen=True, eq=False)
 class SourceView:
-    """Sources as receivers of one plane see them, straight and in mirrors: what is found once for all of these.
+    """Sources as receivers of some planes see them, straight and in mirrors: what is found once for all of these.
 
     Attributes
     ----------
@@ -254,21 +256,31 @@ class SourceView:
 
     @classmethod
     def of(cls, bright: Bright, planes: list[tuple[np.ndarray, np.ndarray]]) -> list[SourceView]:
-        """From receivers of each of some planes: four corners (4, 3) that these lie between, and its normal."""
+        """From receivers of planes: four corners (4, 3) that these lie between, and a normal; some planes in each."""
         found = []
         together = max(1, _PAIRS // max(1, len(bright.sources) * len(bright.outlines.vertices)))
         for first in range(0, len(planes), together):
-            family = _Family()
-            for corners, normal in planes[first : first + together]:
-                horizon = HalfSpace(normal, float(normal @ corners[0]))
-                family.paths.append(_Path(bright, corners, horizon, None, (), Blockers.none(), 1.0, 0, family))
-            found += [cls(bright, path) for path in family.paths]
+            some = planes[first : first + together]
+            corners, normals = np.stack([corners for corners, _ in some]), np.stack([normal for _, normal in some])
+            levels = np.einsum("pc,pc->p", normals, corners[:, 0])
+            none = Blockers.none()
+            found.append(cls(bright, _Path(bright, corners, normals, levels, None, (), none, none.plane, 1.0, 0)))
         return found
 
-    def add(self, points, rows, received: Received, checkpoint: Callable[[], None] = lambda: None) -> None:
-        """Enter what some of the receivers ``(r, 3)`` see, as that of ``rows`` (r,)."""
-        unseen = self.bright.outlines.unseen_backs(points, self.straight.horizon.normal)
-        self._add_all(self.straight, _Leg(points, rows), unseen, received, checkpoint)
+    @property
+    def planes(self) -> int:
+        """How many there are."""
+        return len(self.straight.levels)
+
+    def add(self, points, place, rows, received: Received, checkpoint: Callable[[], None] = lambda: None) -> None:
+        """Enter what receivers ``(r, 3)`` of planes ``(r,)``, ascending, see, as that of ``rows`` (r,)."""
+        leg = _Leg(points, rows, place, self.straight.horizons)
+        outlines = self.bright.outlines
+        unseen = np.zeros((self.planes, len(outlines.vertices)), bool)
+        if outlines.solids is not None:
+            for number in np.unique(place).tolist():
+                unseen[number] = outlines.unseen_backs(points[leg.of(number)], leg.horizons[number])
+        self._add_all(self.straight, leg, unseen, received, checkpoint)
 
     def _add_all(self, path: _Path, leg: _Leg, unseen, received: Received, checkpoint) -> None:
         """Enter light that comes past the path's blockers, and by any further mirror."""
@@ -281,22 +293,25 @@ class SourceView:
 
     def _add_sources(self, path: _Path, leg: _Leg, number: int, unseen, received: Received) -> None:
         least, group, outlines = self.bright.least, self.bright.groups[number], self.bright.outlines
-        some, standing = path.sources(number)
-        if not len(some):
+        standing = path.sources(number)
+        which, row = leg.with_each(standing.place)
+        if not len(which):
             return
-        height = group.heights(leg.points)
-        bright = height[some] > outlines.tolerance
+        source = standing.source[which]
+        height = pick(group.heights(leg.points), standing.plane[which], row)
+        before = height > outlines.tolerance
         if leg.opening is not None:
-            bright &= path.throughput * group.most(leg.points, height)[some] > least
-            bright &= path.throughput * leg.opening * group.exitance[some, None] > least
-        which, row = np.nonzero(bright)
-        if not len(row):
+            before &= path.throughput * leg.opening[row] * group.exitance[source] > least
+        bright = np.flatnonzero(before)
+        if leg.opening is not None:
+            most = group.most(source[bright], leg.points[row[bright]], height[bright])
+            bright = bright[path.throughput * most > least]
+        if not len(bright):
             return
-        seen = leg.seen(row, which, standing.corners, group.exitance[some[which]])
+        which, row, source = which[bright], row[bright], source[bright]
+        seen = leg.seen(row, which, standing.corners, group.exitance[source])
         if len(seen.row):
-            normal = path.horizon.normal
-            on_way = path.mirrors, path.throughput
-            light_past(outlines, standing, unseen, seen, leg.points, normal, *on_way, leg.rows, received)
+            light_past(outlines, standing, unseen, seen, leg, path.mirrors, path.throughput, received)
 
     def _add_mirrored(self, path: _Path, leg: _Leg, mirror: int, unseen, received: Received, checkpoint) -> None:
         outlines, tolerance = self.bright.outlines, self.bright.outlines.tolerance
@@ -305,28 +320,29 @@ class SourceView:
         if throughput < self.bright.limits.cutoff:
             return
         aperture = path.aperture(mirror)
-        if not len(aperture):
+        if not len(aperture.shapes):
             return
         normal, offset = outlines.normals[mirror], float(outlines.offsets[mirror])
         both = outlines.two_sided[mirror] or material.reflects_both_sides
+        there = aperture.number[leg.place]
         for side in (1.0, -1.0) if both else (1.0,):
             ahead = HalfSpace(side * normal, side * offset)
-            rows = np.flatnonzero(leg.points @ ahead.normal - ahead.offset > tolerance)
+            rows = np.flatnonzero((leg.points @ ahead.normal - ahead.offset > tolerance) & (there >= 0))
             if not len(rows) or not any(above(g.polygons, ahead, tolerance).any() for g in self.bright.groups):
                 continue
-            one = np.zeros(len(rows), np.int64)
-            seen, _ = leg.seen(rows, one, aperture.transpose(2, 1, 0), np.ones(len(rows))).made()
-            opening = np.abs(whole_form_factors(seen.shape, path.horizon.normal))
+            seen, _ = leg.seen(rows, there[rows], aperture.shapes.transpose(2, 1, 0), np.ones(len(rows))).made()
+            opening = np.abs(whole_form_factors(seen.shape, leg.normals.take(seen.row, axis=1)))
             bright = np.flatnonzero(throughput * self.bright.brightest * opening > self.bright.least)
             if not len(bright):
                 continue
-            seen = seen.take(bright)
-            window = seen.shape.transpose(2, 1, 0)
+            bright = bright[np.argsort(seen.row[bright])]
+            seen, way = seen.take(bright), path.mirrored(mirror, ahead, throughput)
             further = _Leg(
                 reflect_points(leg.points[seen.row], normal, offset),
                 leg.rows[seen.row],
-                reflect(window, normal),
+                leg.place[seen.row],
+                way.horizons,
+                reflect(seen.shape.transpose(2, 1, 0), normal),
                 opening[bright],
             )
-            way = path.mirrored(mirror, ahead, throughput)
             self._add_all(way, further, unseen, received, checkpoint)

@@ -314,7 +314,8 @@ def test_threads_that_need_the_same_images_wait_for_each_other(monkeypatch):
         return by(*args)
 
     by = sources._Path._by
-    monkeypatch.setattr(sys.modules["luzespecular.solve"], "_SOURCE_TASK", 8)
+    for least in ("_SOURCE_ROWS", "_SOURCE_PAIRS"):
+        monkeypatch.setattr(sys.modules["luzespecular.solve"], least, 8)
     alone, together = (prepare_coarse(mirror_box(), elements=60, bands=4, threads=n).solve(DARK) for n in (1, 2))
     np.testing.assert_array_equal(together.illuminance, alone.illuminance)
     monkeypatch.setattr(sources._Path, "_by", slowly)

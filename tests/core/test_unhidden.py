@@ -147,10 +147,12 @@ def test_windows_with_edges_on_the_lamps_own():
 
 def overlaps(blockers, lamp, facing):
     """(k, r) bool twice: what hides and what crosses the lamp, those told apart beforehand left out."""
-    standing = Standing.of(blockers, lamp[None], np.zeros(1, int), EYES, 1e-12)
+    one = np.zeros(1, int)
+    standing = Standing.of(blockers, np.zeros(len(blockers), int), lamp[None], one, one, one, EYES[None], 1e-12)
     hides, crosses = np.zeros((2, len(blockers), len(EYES)), bool)
-    mine = standing.blockers.outline[standing.overlaps.outer]
-    hides[mine], crosses[mine] = standing.overlaps.seen(EYES, facing[standing.blockers.outline])
+    for lookout in standing.lookouts:
+        mine = standing.blockers.outline[lookout.overlaps.outer]
+        hides[mine], crosses[mine] = lookout.overlaps.seen(EYES, facing[standing.blockers.outline])
     return hides, crosses
 
 
