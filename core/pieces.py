@@ -10,7 +10,7 @@ import numpy as np
 from . import polygons
 from .outlines import Outlines
 
-_EVEN = 0.2
+_EVEN = 0.4
 _EVEN_TO = 0.003
 """By how much shares of light at corners may differ from that in the middle: of it, and more by so much."""
 

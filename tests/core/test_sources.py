@@ -266,6 +266,46 @@ def test_a_pane_mirrors_a_small_lamp():
         assert got == pytest.approx(1000 * factor(image, [0, 0, 1], -UP) * float(glass.specular_at(cosine)), rel=1e-4)
 
 
+@pytest.mark.parametrize("board", [False, True])
+def test_large_lamps_before_a_pane_whose_share_of_light_changes_over_them(board):
+    """Near the pane a lamp is mirrored by 5 % from one end and by 70 % from the other: summed point by point."""
+    pane = luz.Material(regular_transmittance=0.88, refractive_index=1.52)
+    lamp, hidden = floor((0.3, 1.9), (0.5, 2.5), 0), floor((1, 1.5), (1, 2), 0.3)
+    given = {"lamp": lamp, "pane": np.array([[2, 0, 0], [2, 3, 0], [2, 3, 3], [2, 0, 3]])}
+    given |= {"board": hidden} if board else {}
+    rng = np.random.default_rng(1)
+    places = rng.uniform((0.1, 0.25), (2.9, 2.9), (6, 2))
+    near, across = np.column_stack([np.zeros(6), places]), np.array([4.0, 0, 0])
+    normals = np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], 6, axis=0)
+    got = lux_at(given, {"lamp": GLOW, "pane": pane}, np.concatenate([near, near + across]), normals)
+    count = 800
+    x, y = np.meshgrid(0.3 + 1.6 * (np.arange(count) + 0.5) / count, 0.5 + 2 * (np.arange(count) + 0.5) / count)
+    here = np.stack([x, y, np.zeros_like(x)], axis=-1)
+    image = here * [-1, 1, 1] + across
+
+    def seen(eye, place):
+        """Whether the board leaves a way between two points."""
+        at = eye + (place - eye) * ((0.3 - eye[2]) / (place[..., 2] - eye[2]))[..., None]
+        inside = (at[..., 0] > 1) & (at[..., 0] < 1.5) & (at[..., 1] > 1) & (at[..., 1] < 2)
+        return ~(inside & board & (eye[2] > 0.3))
+
+    def lux(eye, place, share):
+        way = place - eye
+        distance = np.linalg.norm(way, axis=-1)
+        cosine = np.abs(way[..., 0]) / distance
+        factors = share(cosine) * cosine * np.abs(way[..., 2]) / (np.pi * distance**3)
+        return 1000 * 3.2 * float(factors.mean())
+
+    for k, eye in enumerate(near):
+        far, mirrored = eye + across, eye * [-1, 1, 1] + across
+        through = lux(far, here, lambda cosine, far=far: pane.transmittance_at(cosine) * seen(far, here))
+        straight = lux(eye, here, lambda _, eye=eye: seen(eye, here))
+        ways = seen(eye, image) & seen(mirrored, here)
+        back = lux(eye, image, lambda cosine, ways=ways: pane.specular_at(cosine) * ways)
+        assert got[k] == pytest.approx(straight + back, rel=2e-3)
+        assert got[6 + k] == pytest.approx(through, rel=2e-3)
+
+
 def test_lamps_add_up():
     one, two = ceiling((-1, 0), (-1, 1), 2), ceiling((0, 1), (-1, 1), 2)
     both = lux_at({"one": one, "two": two}, {"one": GLOW, "two": luz.Material(exitance=300)}, [0.5, 0.2, 0])[0]
