@@ -25,6 +25,13 @@ number of parts the line may be, in cells; and parts where it runs askew."""
 _MOST_PLACES = 400_000
 """Parts of one run's cells that are told apart."""
 
+_ACROSS = 3
+"""Cells across a narrow strip from which it has patches of its own, however small: what it sends, and is seen of it by
+the next, is not even across."""
+
+_MOST_STRIPS = 160
+"""Such strips: where there are more, these would be most of all patches."""
+
 _PARTS = 20
 """Columns across a narrow strip, about: an odd number, as whole slats far away are seen at their middle."""
 
@@ -137,12 +144,15 @@ def make_patches(
     sheet_area = np.add.reduceat(areas[order], starts)
     bounds = np.append(starts, len(order))
     runs = {int(element_sheet[lattice.grid.first]): lattice for lattice in lattices}
+    strips = {sheet for sheet, lattice in runs.items() if _is_strip(lattice.grid, patch_area)}
+    if len(strips) > _MOST_STRIPS:
+        strips.clear()
     grid, cells, count, parts = [], 0, 0, 0
     profiles: list[Profile] = []
     small = []
     for k, sheet in enumerate(used):
         members = order[bounds[k] : bounds[k + 1]]
-        if sheet_area[k] <= 1.5 * patch_area or len(members) == 1:
+        if len(members) == 1 or (sheet_area[k] <= 1.5 * patch_area and sheet not in strips):
             small.append(k)
             continue
         place = centroids[members] @ planes.sheet_axes[sheet % fronts].T
@@ -204,6 +214,13 @@ def make_patches(
     column = np.where(column < 0, count - 1 - column, column)
     after = tuple(replace(p, first_column=count + p.first_column) for p in profiles)
     return Patches(count, of_element, origin, scale, shape, base, column, after)
+
+
+def _is_strip(grid: Grid, patch_area: float) -> bool:
+    """Whether a run is narrower than a patch and longer, and cut across all the same, as others lie close to it."""
+    widths = grid.sides * grid.shape
+    across = grid.shape[int(np.argmin(widths))]
+    return bool(across >= _ACROSS and widths.max() > 2 * math.sqrt(patch_area) > 4 * widths.min())
 
 
 def _make_up(layout: Layout, members: np.ndarray, in_cells: np.ndarray) -> bool:

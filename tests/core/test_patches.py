@@ -10,7 +10,11 @@ from hypothesis import strategies as st
 from layout_samples import WHITE, geometry_of, shelf, wall, wall_and
 
 import luzespecular as luz
+from luzespecular import geometry as geometry_room
+from luzespecular import patches as patches_room
 from luzespecular.fracture import fracture
+from luzespecular.geometry import make_geometry
+from luzespecular.globe import Globe
 from luzespecular.patches import make_patches
 from luzespecular.planes import find_planes
 
@@ -160,6 +164,40 @@ def test_every_patch_is_whole_and_numbered_once(width, height, target, z):
     mine = geometry.element_surface == 0
     assert (patches.of_element[mine] >= 0).all() and (patches.of_element[~mine] == -1).all()
     np.testing.assert_array_equal(np.unique(patches.of_element[mine]), np.arange(patches.count))
+
+
+def slats(count, tilt=0.02):
+    """A white floor of 30 m², and slats of 4.5 cm close one above the other, smaller than its patches."""
+    scene = luz.Scene()
+    scene.add("floor", [[-2, 0, -1], [4, 0, -1], [4, 5, -1], [-2, 5, -1]], WHITE)
+    for k in range(count):
+        z = 0.045 * k
+        scene.add(f"slat {k}", [[0, 2, z + tilt], [2, 2, z + tilt], [2, 2.04, z], [0, 2.04, z]], WHITE, two_sided=True)
+    return scene
+
+
+def patches_of_slats(monkeypatch, count):
+    monkeypatch.setattr(geometry_room, "PATCHES", 100)
+    geometry = make_geometry(slats(count), find_planes(slats(count)), Globe(4), None)
+    of, sheet = geometry.targets.patches.of_element, geometry.fracture.element_sheet
+    return geometry, [np.unique(of[sheet == s]) for s in range(1, len(geometry.planes.sheet_surface))]
+
+
+def test_slats_smaller_than_a_patch_are_parted_across(monkeypatch):
+    """One above the other they see each other's near edges, which are not as bright as the far ones."""
+    geometry, patches = patches_of_slats(monkeypatch, 4)
+    cuts = geometry.fracture
+    assert cuts.element_areas[cuts.element_sheet == 1].sum() < 30 / 100
+    for sheet, mine in enumerate(patches, 1):
+        y = cuts.elements[cuts.element_sheet == sheet][:, :, 1]
+        of = geometry.targets.patches.of_element[cuts.element_sheet == sheet]
+        assert len(mine) >= 9 and all(np.ptp(y[of == k]) < 0.021 for k in mine)
+
+
+def test_a_great_many_slats_share_patches_as_leaves_do(monkeypatch):
+    monkeypatch.setattr(patches_room, "_MOST_STRIPS", 7)
+    _, patches = patches_of_slats(monkeypatch, 4)
+    assert max(len(mine) for mine in patches) <= 2
 
 
 def test_no_diffuse_surface_no_patches():
