@@ -26,8 +26,9 @@ FEWEST_ELEMENTS = 4_000
 ELEMENTS_PER_PLAIN_SURFACE = 200
 """Receivers inside a surface that neither emits nor reflects diffusely, and so is not cut itself."""
 
-MOST_FINER = 40_000
-"""Elements at most that a scene gets beyond those for its faces, where other surfaces are near."""
+MOST_FINER, TIMES_FINER = 40_000, 4
+"""Elements at most that a scene gets beyond those for its faces, where other surfaces are near; and how many times as
+many as its runs have otherwise, or of these the share of one of the other outlines, whichever is more."""
 
 _FEWEST_CELLS = 4
 _MOST_SLENDER = 4.0
@@ -307,7 +308,7 @@ def fracture(
     sheet = planes.given_sheet[faces.parent]
     glows = np.zeros(len(planes.surfaces), bool) if luminous is None else np.asarray(luminous)
     wide = _wide_at_most(faces.grids, planes, sheet, np.asarray(two_sided), glows)
-    parts = _elements(faces, fine[face_surface], wide / math.sqrt(times))
+    parts = _elements(faces, fine[face_surface], wide / math.sqrt(times), len(planes.outlines))
     back_of = np.flatnonzero(np.asarray(two_sided)[face_surface])
     place = np.full(len(faces.parent), -1)
     place[back_of] = len(faces.parent) + np.arange(len(back_of))
@@ -347,7 +348,7 @@ def _wide_at_most(grids, planes: Planes, sheet, two_sided, luminous) -> np.ndarr
     return wide
 
 
-def _divisions(grids, areas, limits, wide) -> tuple[np.ndarray, np.ndarray]:
+def _divisions(grids, areas, limits, wide, outlines: int) -> tuple[np.ndarray, np.ndarray]:
     """(runs,) int and (runs, 2) int: what cells' sides are divided by, and what either side alone would be."""
     sides = np.array([grid.sides for grid in grids]).reshape(-1, 2)
     first = np.array([grid.first for grid in grids], np.int64)
@@ -355,15 +356,16 @@ def _divisions(grids, areas, limits, wide) -> tuple[np.ndarray, np.ndarray]:
     slender = np.minimum(sides.max(axis=1) / sides.min(axis=1), _MOST_SLENDER)
     plain = np.maximum(1, np.ceil(np.sqrt(slender * areas[first] / limits[first]) - 1e-9)).astype(int)
     cells = np.array([2 * grid.rows * grid.columns for grid in grids])
+    most = min(MOST_FINER, max(MOST_FINER // max(outlines - 1, 1), TIMES_FINER * int((cells * plain**2).sum())))
     while True:
         alone = np.maximum(plain[:, None], np.rint(sides / wide).astype(int))
         times = alone.max(axis=1)
-        if (cells * (times**2 - plain**2)).sum() <= MOST_FINER:
+        if (cells * (times**2 - plain**2)).sum() <= most:
             return times, alone
         wide = 1.25 * wide
 
 
-def _elements(faces: Triangles, limits: np.ndarray, wide: np.ndarray) -> Triangles:
+def _elements(faces: Triangles, limits: np.ndarray, wide: np.ndarray, outlines: int) -> Triangles:
     """Cut faces into elements no larger than limits ``(faces,)``: runs of cells into finer runs, others by halving.
 
     Runs get cells no wider than ``wide`` (runs, 2) [m] as well, so far as `MOST_FINER` allows.
@@ -371,7 +373,8 @@ def _elements(faces: Triangles, limits: np.ndarray, wide: np.ndarray) -> Triangl
     areas = faces.areas
     alone = np.ones(len(areas), bool)
     found, parents, grids, count = [], [], [], 0
-    for grid, times, enough in zip(faces.grids, *_divisions(faces.grids, areas, limits, wide), strict=True):
+    divisions = _divisions(faces.grids, areas, limits, wide, outlines)
+    for grid, times, enough in zip(faces.grids, *divisions, strict=True):
         cells = np.arange(grid.first, grid.first + 2 * grid.rows * grid.columns)
         if grid.rows * grid.columns * times**2 < _FEWEST_CELLS:
             continue  # too few cells to tell how light changes

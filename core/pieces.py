@@ -109,7 +109,9 @@ class SeenShapes:
         height = planes[0, :, None] * shape[0]
         height += planes[1, :, None] * shape[1]
         height += planes[2, :, None] * shape[2]
-        beside = ((height.max(axis=1) <= 0) & windows.edges.take(row, axis=1)).any(axis=0)
+        # what only touches a window's edge, as where surfaces cross, is beside it
+        beside = height.max(axis=1) <= _TOUCHES * np.abs(shape).max(axis=(0, 1))
+        beside = (beside & windows.edges.take(row, axis=1)).any(axis=0)
         cut = (height.min(axis=1) < 0).any(axis=0)
         some = np.flatnonzero(cut & ~beside)
         # polygons that cross a mirror may leave but an edge behind it, which a window must not find inside
@@ -159,6 +161,9 @@ def tightened(shapes) -> tuple[np.ndarray, np.ndarray]:
     rows = np.arange(len(shapes))[:, None]
     return shapes[rows, order[rows, place]], counts
 
+
+_TOUCHES = 1e-10
+"""Height within a window's edge, over the distance, up to which a polygon is beside it."""
 
 _SAME = 1e-12
 """Over a polygon's size: corners that are no farther apart are one."""

@@ -20,8 +20,12 @@ _FAINT = 3e-4
 fewer that show as much, and go on one way: else they would double at every pane."""
 
 _MOST_IMAGES = 80
+_MOST_OF_SOURCES = 400
+"""Images of mirrors times luminous polygons."""
+
 _DEEPEST_IMAGE = 40
 _WALLS_OF_BOX = 6
+_RIGHT_ANGLE = 1e-6
 
 
 @dataclass
@@ -47,18 +51,28 @@ class ChainLimits:
 def exact_mirrors(outlines: Outlines) -> int:
     """How many mirrors on the way leave images few enough to be looked for one by one.
 
-    Between n mirrors there are at most n (n − 1)^(k − 1) images of order k; between up to six, which will mostly be
-    walls of a box that meet at right angles, about 4 k² + 2.
+    Between n mirrors there are at most n (n − 1)^(k − 1) images of order k; between up to six at right angles, as walls
+    of a box are, about 4 k² + 2. Those of the first order are all looked for.
     """
-    n = sum(m.is_specular for m in outlines.materials)
+    mirrors = np.flatnonzero([m.is_specular for m in outlines.materials])
+    n, box = len(mirrors), _at_right_angles(outlines.normals[mirrors])
+    shining = np.array([m.exitance > 0 for m in outlines.materials])
+    sources = int(shining.sum() + (shining & outlines.two_sided).sum())
+    most = min(_MOST_IMAGES, _MOST_OF_SOURCES // max(sources, 1))
     images, order = 0, 0
     while order < _DEEPEST_IMAGE:
         every = n * max(n - 1, 1) ** order
-        images += min(every, 4 * (order + 1) ** 2 + 2) if n <= _WALLS_OF_BOX else every
-        if order and images > _MOST_IMAGES:
+        images += min(every, 4 * (order + 1) ** 2 + 2) if box and n <= _WALLS_OF_BOX else every
+        if order and images > most:
             break
         order += 1
     return order
+
+
+def _at_right_angles(normals) -> bool:
+    """Whether planes of normals ``(n, 3)`` are all parallel or at right angles to each other."""
+    cosines = np.abs(normals @ normals.T)
+    return bool((np.minimum(cosines, 1 - cosines) < _RIGHT_ANGLE).all())
 
 
 @dataclass(frozen=True, eq=False)

@@ -262,6 +262,20 @@ def test_how_many_mirrors_are_looked_into_one_by_one(mirrors, deepest):
     assert exact_mirrors(make_geometry(scene, find_planes(scene), Globe(4), math.inf).outlines) == deepest
 
 
+@pytest.mark.parametrize(
+    ("lamps", "aslant", "deepest"), [(0, 0.0, 3), (4, 0.0, 3), (20, 0.0, 1), (0, 0.3, 2), (4, 0.3, 2)]
+)
+def test_images_are_fewer_where_many_surfaces_shine_or_mirrors_stand_aslant(lamps, aslant, deepest):
+    """The images of six mirrors at any angle are as many as the ways between them; each lamp shows in all of them."""
+    scene = luz.Scene()
+    for k, polygon in enumerate(box_polygons().values()):
+        scene.add(f"mirror {k}", polygon + aslant * np.outer(polygon[:, k % 3], np.eye(3)[(k + 1) % 3]), mirror(0.9))
+    for k in range(lamps):
+        place = [0.1 + 0.03 * k, 0.5, 0.5]
+        scene.add(f"lamp {k}", 0.02 * box_polygons()["floor"] + place, luz.Material(exitance=1.0), two_sided=k % 2 > 0)
+    assert exact_mirrors(make_geometry(scene, find_planes(scene), Globe(4), math.inf).outlines) == deepest
+
+
 def test_sightings_of_few_and_of_many_mirrors_are_told_apart():
     limits = ChainLimits(exact_mirrors=3)
     assert limits.kind(np.arange(7)).tolist() == [0, 1, 1, 1, 4, 4, 4]

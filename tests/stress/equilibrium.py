@@ -169,7 +169,13 @@ def situations() -> Iterator[Situation]:
         "all sorts": [warm(0, 0.9), clear(1.8), warm(0.3, 0.2, 0.4), warm(0.95)],
     }.items():
         yield row(f"{name} in the open", lambda m=materials: even(plates(m, 7), points=inside))
-    yield row("twelve plates that cross", lambda: even(plates([warm(0.5), warm(0.2, 0.6)], 3, 12), points=inside), True)
+    crossing = [warm(0.5), warm(0.2, 0.6)]
+    for name, count, allowed in (("four", 4, LEAST), ("six", 6, LEAST), ("twelve", 12, AS_COARSE)):
+        yield row(
+            f"{name} plates that cross",
+            lambda n=count, a=allowed: even(plates(crossing, 3, n), points=inside, allowed=a),
+            count > 4,
+        )
     within = inside * 0.3 + [1.5, 1.0, 1.9]
     yield row("a closed room of mixed walls", lambda: even(closed(warm(0.7), floor=warm(0.1)), DARK, within))
     yield row("a closed room with a mirror", lambda: even(closed(warm(0.7), west=warm(0, 0.8)), DARK, within))
