@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from . import polygons
 from .grid import ON_LINE, Grid
 from .layout import Layout
 from .planes import Planes
@@ -24,6 +25,15 @@ number of parts the line may be, in cells; and parts where it runs askew."""
 
 _MOST_PLACES = 400_000
 """Parts of one run's cells that are told apart."""
+
+_WHOLE = 0.9
+"""Share of a sheet's breadth that lines of contact along one place make up, where they part it in two."""
+
+_MOST_PARTED = 500
+"""Sheets smaller than a patch, of which it is asked whether a line of contact parts them."""
+
+_WALL, _MOST_WALLS = 4.0, 200
+"""Area of outlines that part small sheets on either side of them, in average patches; and how many of them do."""
 
 _ACROSS = 3
 """Cells across a narrow strip from which it has patches of its own, however small: what it sends, and is seen of it by
@@ -147,12 +157,15 @@ def make_patches(
     strips = {sheet for sheet, lattice in runs.items() if _is_strip(lattice.grid, patch_area)}
     if len(strips) > _MOST_STRIPS:
         strips.clear()
+    is_small = sheet_area <= 1.5 * patch_area
+    asked = np.count_nonzero(is_small) <= _MOST_PARTED
     grid, cells, count, parts = [], 0, 0, 0
     profiles: list[Profile] = []
     small = []
     for k, sheet in enumerate(used):
         members = order[bounds[k] : bounds[k + 1]]
-        if len(members) == 1 or (sheet_area[k] <= 1.5 * patch_area and sheet not in strips):
+        few = is_small[k] and sheet not in strips
+        if len(members) == 1 or (few and not asked):
             small.append(k)
             continue
         place = centroids[members] @ planes.sheet_axes[sheet % fronts].T
@@ -162,6 +175,13 @@ def make_patches(
         )
         low, extent = outline.min(axis=0), np.maximum(np.ptp(outline, axis=0), 1e-300)
         run = runs.get(int(sheet))
+        if few:
+            axes = planes.sheet_axes[sheet % fronts]
+            layout = Layout.over(int(sheet), (1, 1), axes, low, extent, planes) if run is None else run
+            if not _is_parted(layout):
+                small.append(k)
+                continue
+            run = None
         if run is not None and _make_up(run, members, in_cells := run.grid.in_cells(centroids[members])):
             graded = _graded(run, planes.sheet_axes[sheet % fronts], low, extent, patch_area, in_cells)
             if graded is not None:
@@ -223,6 +243,17 @@ def _is_strip(grid: Grid, patch_area: float) -> bool:
     return bool(across >= _ACROSS and widths.max() > 2 * math.sqrt(patch_area) > 4 * widths.min())
 
 
+def _is_parted(layout: Layout) -> bool:
+    """Whether lines of contact along one place reach from border to border: the sides may be lit quite differently."""
+    across = np.abs(layout.contacts[:, 1] - layout.contacts[:, 0])
+    for axis, length in ((0, layout.grid.columns), (1, layout.grid.rows)):
+        mine = across[:, axis] < ON_LINE
+        _, place = np.unique(np.round(layout.contacts[mine, 0, axis], 6), return_inverse=True)
+        if (np.bincount(place.reshape(-1), weights=across[mine, 1 - axis]) > _WHOLE * length).any():
+            return True
+    return False
+
+
 def _make_up(layout: Layout, members: np.ndarray, in_cells: np.ndarray) -> bool:
     """Whether elements of a sheet, at places ``(k, 2)``, are a run's, with what its cut cells are divided into."""
     run = layout.grid.elements
@@ -253,7 +284,7 @@ def _graded(
     axis = int(np.argmin(widths))
     patch, finer, shares = groups[0][:, None] * counts[1] + groups[1], [1, 1], None
     numbers = patch
-    if widths[axis] < side and counts[axis] > 1:
+    if widths[axis] < side and counts[axis] > 1 and not _cut_along(lattice, axis):
         finer[axis] = max(1, _PARTS // (2 * grid.shape[axis])) * 2 + 1
         shares = profile_shares(groups[axis], lattice.stretches[axis], finer[axis])
         numbers = groups[1 - axis][:, None] * len(shares) + np.arange(len(shares))
@@ -274,6 +305,12 @@ def _graded(
     table = np.zeros(shape, np.int64)
     table[place[:, :, 0], place[:, :, 1]] = numbers
     return of_element, table, shares
+
+
+def _cut_along(lattice: Layout, axis: int) -> bool:
+    """Whether a line of contact runs through the middle of cells at one place of an axis."""
+    one, other = lattice.contacts[:, 0, axis], lattice.contacts[:, 1, axis]
+    return bool(((np.abs(one - other) < ON_LINE) & (np.abs(one - np.rint(one)) > ON_LINE)).any())
 
 
 def _fine_enough(layout: Layout) -> list[int]:
@@ -380,10 +417,28 @@ def _gather_small(planes, centroids, groups, small_area, patch_area, of_element,
         if len(distinct) <= fair or one_cell:
             break
         side *= 2  # leaves far apart share a patch
-    patch = patch.reshape(-1)
+    patch = _divided_by_walls(planes, patch.reshape(-1), middle, side * distinct[:, 3:], side, patch_area)
     for number, (_, members) in zip(patch, groups, strict=True):
         of_element[members] = count + number
     return count + int(patch.max()) + 1
+
+
+def _divided_by_walls(
+    planes: Planes, patch: np.ndarray, places: np.ndarray, corners: np.ndarray, side: float, patch_area: float
+):
+    """(k,) int: patches of places ``(k, 3)`` in cubes from ``corners`` on, those on either side of a wall apart."""
+    area = polygons.areas(planes.outlines)
+    walls = np.argsort(-area, kind="stable")[: min(_MOST_WALLS, np.count_nonzero(area > _WALL * patch_area))]
+    key = np.zeros(len(places))
+    for wall, weight in zip(walls, np.random.default_rng(0).random(len(walls)), strict=True):
+        outline, normal = planes.outlines[wall], planes.sheet_normal[planes.outline_sheet[wall]]
+        offset = outline[0] @ normal
+        near = (corners <= outline.max(axis=0)).all(axis=1) & (corners + side >= outline.min(axis=0)).all(axis=1)
+        near &= np.abs((corners + 0.5 * side) @ normal - offset) <= 0.5 * side * np.abs(normal).sum()
+        if near.any():
+            mine = near[patch]
+            key[mine] += weight * (places[mine] @ normal - offset > 1e-9 * planes.size)
+    return np.unique(np.c_[patch, key], axis=0, return_inverse=True)[1].reshape(-1)
 
 
 def _fill_cells(filled: np.ndarray, n: np.ndarray) -> np.ndarray:

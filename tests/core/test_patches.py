@@ -200,6 +200,38 @@ def test_a_great_many_slats_share_patches_as_leaves_do(monkeypatch):
     assert max(len(mine) for mine in patches) <= 2
 
 
+def test_small_sheets_on_either_side_of_a_wall_share_no_patch(monkeypatch):
+    """However close: else a closed room would be lit by the next one."""
+    monkeypatch.setattr(geometry_room, "PATCHES", 50)
+    scene, plates = wall_and(two_sided=True), []
+    for y in (-0.06, -0.02, 0.02, 0.06):
+        plates.append([[1, y - 0.01, 0.5], [1.02, y - 0.01, 0.5], [1.02, y + 0.01, 0.5], [1, y + 0.01, 0.5]])
+    scene.add("plates", np.concatenate(plates), WHITE, faces=np.arange(16).reshape(4, 4), two_sided=True)
+    geometry = make_geometry(scene, find_planes(scene), Globe(4), None)
+    of, y = geometry.targets.patches.of_element, geometry.element_points[:, 1] + geometry.planes.centre[1]
+    mine = geometry.element_surface == 1
+    assert not set(of[mine & (y < 0)].tolist()) & set(of[mine & (y > 0)].tolist())
+    assert len(np.unique(of[mine])) == 4
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_small_sheets_that_a_wall_crosses_are_parted(monkeypatch, turned):
+    """A board through a wall: light of its bright end does not leave from its dark one."""
+    monkeypatch.setattr(geometry_room, "PATCHES", 50)
+    turn = TURNED if turned else np.eye(3)
+    scene = luz.Scene()
+    scene.add("wall", np.array([[0, 0, 0], [0, 0, 1], [2, 0, 1], [2, 0, 0]]) @ turn.T, WHITE, two_sided=True)
+    board = np.array([[0.4, -0.1, 0.5], [1.6, -0.1, 0.5], [1.6, 0.05, 0.5], [0.4, 0.05, 0.5]])
+    scene.add("board", board @ turn.T, WHITE)
+    geometry = make_geometry(scene, find_planes(scene), Globe(4), None)
+    of = geometry.targets.patches.of_element
+    y = (geometry.fracture.elements + geometry.planes.centre) @ turn[:, 1]
+    mine = geometry.element_surface == 1
+    for number in np.unique(of[mine]):
+        here = y[of == number]
+        assert here.max() < 1e-9 or here.min() > -1e-9
+
+
 def test_no_diffuse_surface_no_patches():
     _, patches = patches_of(box(BLACK), 100)
     assert patches.count == 0 and (patches.of_element == -1).all() and (patches.grid_base == -1).all()
