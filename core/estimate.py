@@ -1,7 +1,8 @@
-"""Estimate of errors: how far illuminances may be from exact ones, told by a coarser globe at some of the nodes.
+"""Estimate of errors: how far illuminances may be from exact ones, told by a finer globe at some of the nodes.
 
-The globe's error falls with the square of its bands. So a second look at some nodes of each sheet, on a globe of half
-as many parcels, differs from the first by more than that is wrong; what differs for the light at hand tells its error.
+The globe's error falls with the square of its bands. So a second look at some nodes of each sheet, on a globe of twice
+as many, differs from the first by most of what that is wrong by; what differs for the light at hand tells its error. (A
+coarser one would not see what both err by: a bright strip smaller than the parcels of either is one sample in both.)
 """
 
 from __future__ import annotations
@@ -22,14 +23,22 @@ from .tracing import ChainLimits
 
 _SHARE = 0.04
 _FEWEST, _MOST = 4, 400
-_TOGETHER = 200
+_BEAMS = 1_200_000
+"""Receivers, times parcels, that one thread looks at together."""
+
 _FACETS = 100
 """Facets that are looked from themselves, of those that share receivers."""
 
-OF_DIFFERENCE = 1.4
+FINER = 2.0
+"""Bands of the second look's globe, over those of the first."""
+
+_COARSER = math.sqrt(0.5)
+"""The same where facets that share a receiver are compared with each other."""
+
+OF_DIFFERENCE = 2.2
 """What about 95 of 100 errors are below, over the root mean square difference of the two globes."""
 
-OF_MERGING = 0.35
+OF_MERGING = 0.4
 """The same over what patches twice as wide change: errors fall with the square of their width."""
 
 OF_SPREAD = 2.0
@@ -38,13 +47,21 @@ OF_SPREAD = 2.0
 OF_DOUBT = 0.5
 """The same for interpolation, over the surprise of the nodes around."""
 
+_NEAR, _FALL = 0.25, 1.5
+"""How samples count for an element at a distance: as 1 / (0.25 + d²/D²) to that power, D² the area of each."""
+
+_OF_ALL = 0.7
+"""And the mean over the whole sheet: as one at nearly that distance."""
+
+_BLOCK = 1_000_000
+
 LEAST = 5e-4
 """No error is told to be less than this share of the illuminance: patches, rounding, tolerance of the cycles."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """Some nodes, looked from on a coarser globe.
+    """Some nodes, looked from on a finer globe.
 
     Attributes
     ----------
@@ -70,14 +87,17 @@ class Facets:
     Attributes
     ----------
     element : (f,) int
+    targets : Targets
+        As in `Trial`, on a coarser globe.
     cells : (f, c) float32
-        Differences of form factors, as in `Trial`.
+        Differences of form factors.
     sky : (f, s) float32
     sharing : (e,) bool
         Elements that share a receiver.
     """
 
     element: np.ndarray
+    targets: Targets
     cells: np.ndarray
     sky: np.ndarray
     sharing: np.ndarray
@@ -101,9 +121,8 @@ def make_trial(
     -------
     Trial
     """
-    bands = max(2, round(geometry.targets.globe.bands / math.sqrt(2)))
-    targets = Targets.of(geometry.planes, geometry.cells.patches, Globe.cut_at_horizon(bands))
-    coarse = replace(geometry, targets=targets)
+    finer = _on_globe(geometry, FINER)
+    targets = finer.targets
     own = np.setdiff1d(np.arange(len(nodes.points)), nodes.shared)
     some = own[_sample(nodes.sheet[own])]
     cells = np.zeros((len(some), targets.patches.count), np.float32)
@@ -115,14 +134,23 @@ def make_trial(
         if unhidden is not None:
             cells[chunk] = unhidden.factors(nodes.points[rows], normal)[:, :-1]
             return
-        sight = sight_of(coarse, limits, normal, float(normal @ nodes.points[rows[0]]))
+        sight = sight_of(finer, limits, normal, float(normal @ nodes.points[rows[0]]))
         found = gather(sight, nodes.points[rows], targets, checkpoint)
         cells[chunk] = found.patches
         sky[chunk] = found.sky
 
-    chunks = chunks_of_receivers(nodes.points[some], nodes.sheet[some], geometry.planes, _TOGETHER)
+    together = max(4, _BEAMS // targets.globe.count)
+    chunks = chunks_of_receivers(nodes.points[some], nodes.sheet[some], geometry.planes, together)
     run_parallel(work, chunks, threads, lambda done: None)
-    return Trial(some, targets, cells, sky, _look_from_facets(coarse, nodes, limits, threads))
+    facets = _look_from_facets(_on_globe(geometry, _COARSER), nodes, limits, threads)
+    return Trial(some, targets, cells, sky, facets)
+
+
+def _on_globe(geometry: Geometry, times: float) -> Geometry:
+    """With so many times as many bands, and cells as patches."""
+    bands = max(2, round(times * geometry.targets.globe.bands))
+    targets = Targets.of(geometry.planes, geometry.cells.patches, Globe.cut_at_horizon(bands))
+    return replace(geometry, targets=targets)
 
 
 def _look_from_facets(geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: int) -> Facets:
@@ -146,7 +174,7 @@ def _look_from_facets(geometry: Geometry, nodes: Nodes, limits: ChainLimits, thr
             sky[number] += sign * found.sky[0]
 
     run_parallel(work, list(range(len(pick))), threads, lambda done: None)
-    return Facets(facets[pick], cells, sky, sharing)
+    return Facets(facets[pick], targets, cells, sky, sharing)
 
 
 def _sample(sheet: np.ndarray) -> np.ndarray:
@@ -163,30 +191,64 @@ def _sample(sheet: np.ndarray) -> np.ndarray:
 
 
 def relative_errors(
-    trial: Trial, sheet: np.ndarray, ours: np.ndarray, coarser: np.ndarray, merging: np.ndarray, sheets: int
+    points: np.ndarray,
+    sheet: np.ndarray,
+    ours: np.ndarray,
+    finer: np.ndarray,
+    merging: np.ndarray,
+    where: np.ndarray,
+    where_sheet: np.ndarray,
 ) -> np.ndarray:
-    """(sheets,) float: error of each sheet's nodes over their illuminance.
+    """Errors of elements over their illuminance.
 
     Parameters
     ----------
-    trial : Trial
-    sheet : (m,) int, of all nodes
-    ours, coarser : (k,) float
-        Illuminance of the trial's nodes, by both globes [lx].
+    points : (k, 3) float
+        Of the trial's nodes.
+    sheet : (k,) int
+    ours, finer : (k,) float
+        Illuminance of these nodes, by both globes [lx].
     merging : (k,) float
         What they get more where neighbouring patches do not share their exitance [lx].
-    sheets : int
+    where : (e, 3) float
+        Of the elements.
+    where_sheet : (e,) int
+
+    Returns
+    -------
+    (e,) float
     """
     if not len(ours):
-        return np.full(sheets, LEAST)
+        return np.full(len(where), LEAST)
     floor = 1e-3 * max(float(ours.mean()), 1e-300)
     scale = np.maximum(ours, floor)
-    squared = (OF_DIFFERENCE * (ours - coarser) / scale) ** 2 + (OF_MERGING * merging / scale) ** 2
-    mine = sheet[trial.nodes]
-    count = np.bincount(mine, minlength=sheets)
-    known = np.bincount(mine, weights=squared, minlength=sheets)
-    # few samples of a sheet tell little: they are weighed against all
-    return np.sqrt((known + 2 * squared.mean()) / (count + 2))
+    by_globe, by_patches = (OF_DIFFERENCE * (ours - finer) / scale) ** 2, (OF_MERGING * merging / scale) ** 2
+    found = np.full(len(where), float(by_globe.mean() + by_patches.mean()))
+    samples, elements = (np.argsort(number, kind="stable") for number in (sheet, where_sheet))
+    for one in np.unique(sheet):
+        mine, its = (
+            order[slice(*np.searchsorted(number, [one, one + 1], sorter=order))]
+            for number, order in ((sheet, samples), (where_sheet, elements))
+        )
+        # few samples of a sheet tell little: they are weighed against all
+        globe, patches = ((some[mine].sum() + 2 * some.mean()) / (len(mine) + 2) for some in (by_globe, by_patches))
+        found[its] = _around(points[mine], by_globe[mine], globe, where[its]) + patches
+    return np.sqrt(found)
+
+
+def _around(points: np.ndarray, values: np.ndarray, mean: float, where: np.ndarray) -> np.ndarray:
+    """(e,) float: means around places ``(e, 3)`` of a plane, of values at points ``(k, 3)`` and of their ``mean``."""
+    found = np.empty(len(where))
+    # six times their mean square is the area of a square's points, around its middle
+    area = 6 * np.square(where - where.mean(axis=0)).sum(axis=1).mean() if len(where) else 0.0
+    each = max(float(area) / len(points), 1e-300)
+    step = max(1, _BLOCK // len(points))
+    for first in range(0, len(where), step):
+        some = slice(first, first + step)
+        apart = np.square(where[some, None] - points).sum(axis=2)
+        weight = (_NEAR + apart / each) ** -_FALL
+        found[some] = (weight @ values + _OF_ALL * mean) / (weight.sum(axis=1) + _OF_ALL)
+    return found
 
 
 def spread_of_facets(facets: Facets, surface: np.ndarray, more: np.ndarray) -> np.ndarray:

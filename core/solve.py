@@ -38,7 +38,7 @@ _FINEST = 1e-6
 """Change left to come, over all light, below which products are summed in float64."""
 
 _SOURCE_ROWS = 256
-_SOURCE_PAIRS = 32_000
+_SOURCE_PAIRS = 8_000
 """Receivers, and pairs of these and a source, that one thread looks at together: at least, and about."""
 
 
@@ -422,16 +422,16 @@ def sampled_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: 
     )
     rows = np.searchsorted(transfer.specular_rows, trial.nodes[mirrored])
     ours[mirrored] += np.pi * product(transfer.sky_specular[rows], sky)
-    coarser = np.pi * product(trial.sky, sky_column(trial.targets, light))
-    coarser += product(trial.cells, geometry.cell_means(geometry.from_patches(exitance)))
+    finer = np.pi * product(trial.sky, sky_column(trial.targets, light))
+    finer += product(trial.cells, geometry.cell_means(geometry.from_patches(exitance)))
     more = np.zeros(len(ours))
     if merging and len(exitance):
         group = geometry.targets.patches.merged(geometry.fracture.grids, geometry.fracture.element_sheet)
         areas = geometry.patch_areas
         mean = np.bincount(group, weights=areas * exitance) / np.bincount(group, weights=areas)
         more = product(trial.cells, geometry.cell_means(geometry.from_patches(exitance - mean[group])))
-    sheets = 2 * len(geometry.planes.sheet_surface)
-    return relative_errors(trial, nodes.sheet, ours, coarser, more, sheets)[nodes.element_sheet]
+    points, sheet = nodes.points[trial.nodes], nodes.sheet[trial.nodes]
+    return relative_errors(points, sheet, ours, finer, more, geometry.element_points, nodes.element_sheet)
 
 
 def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: Field) -> np.ndarray:
@@ -441,8 +441,9 @@ def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field:
     relative = sampled_errors(transfer, light, sky, field, merging=True) + OF_DOUBT * transfer.unsure
     geometry, trial = transfer.geometry, transfer.trial
     exitance = geometry.cell_means(geometry.from_patches(field.patch_exitance + field.patch_emitted))
-    more = np.pi * product(trial.facets.sky, sky_column(trial.targets, light)) + product(trial.facets.cells, exitance)
-    return relative * (total - exact) + LEAST * total + spread_of_facets(trial.facets, geometry.element_surface, more)
+    facets = trial.facets
+    more = np.pi * product(facets.sky, sky_column(facets.targets, light)) + product(facets.cells, exitance)
+    return relative * (total - exact) + LEAST * total + spread_of_facets(facets, geometry.element_surface, more)
 
 
 def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:

@@ -10,7 +10,8 @@ from builders import BLACK, DARK, UNIFORM, box, prepare_coarse, scene_of
 from layout_samples import triangle_rule
 
 import luzespecular as luz
-from luzespecular.estimate import LEAST, OF_DIFFERENCE, OF_MERGING, Trial, relative_errors
+from luzespecular import estimate
+from luzespecular.estimate import FINER, LEAST, OF_DIFFERENCE, OF_MERGING, relative_errors
 
 CASES = {
     case["id"]: case
@@ -176,37 +177,53 @@ def test_every_sheet_is_looked_from_again(transfers):
     assert (tried[all_ > 0] >= np.minimum(all_[all_ > 0], 4)).all()
     assert len(transfer.trial.nodes) < 0.15 * len(sheets)
     assert len(np.unique(transfer.trial.nodes)) == len(transfer.trial.nodes)
-    assert transfer.trial.targets.globe.count == pytest.approx(transfer.geometry.targets.globe.count / 2, rel=0.05)
+    assert transfer.trial.targets.globe.count == pytest.approx(
+        FINER**2 * transfer.geometry.targets.globe.count, rel=0.05
+    )
     total = transfer.trial.cells.sum(axis=1) + transfer.trial.sky.sum(axis=1)
     assert total.max() < 1 + 1e-4 and total.min() > 0.5, "mirrors absorb some"
 
 
-def trial_of(nodes):
-    none = np.zeros((len(nodes), 0))
-    return Trial(np.array(nodes), None, none, none, None)
-
-
 def test_errors_of_sheets_by_their_differences():
     """A sheet of many samples by its own, one of few by those of all, one of none by all."""
-    sheet = np.repeat([0, 1, 2], [400, 3, 5])
-    nodes = [*range(400), 400]
-    coarser = np.full(401, 100.0)
+    places = np.random.default_rng(2).uniform(0, 1, (401, 3))
+    sheet = np.repeat([0, 1], [400, 1])
+    where, on = places[[5, 400, 400]], np.array([0, 1, 2])
+    finer = np.full(401, 100.0)
     ours = np.where(np.arange(401) < 400, 101.0, 110.0)
     none = np.zeros(401)
-    got = relative_errors(trial_of(nodes), sheet, ours, coarser, none, 3)
-    assert got[0] == pytest.approx(OF_DIFFERENCE / 101, rel=0.01)
-    mean = math.sqrt(np.mean(((ours - coarser) / ours) ** 2))
+    got = relative_errors(places, sheet, ours, finer, none, where, on)
+    assert got[0] == pytest.approx(OF_DIFFERENCE / 101, rel=0.02)
+    mean = math.sqrt(np.mean(((ours - finer) / ours) ** 2))
     assert OF_DIFFERENCE * mean < got[1] < OF_DIFFERENCE * 10 / 110, "one sample is not believed alone"
     assert got[2] == pytest.approx(OF_DIFFERENCE * mean)
-    np.testing.assert_allclose(relative_errors(trial_of(nodes), sheet, 7 * ours, 7 * coarser, none, 3), got)
-    merging = relative_errors(trial_of(nodes), sheet, ours, ours, ours - coarser, 3)
-    np.testing.assert_allclose(merging, OF_MERGING / OF_DIFFERENCE * got)
+    np.testing.assert_allclose(relative_errors(places, sheet, 7 * ours, 7 * finer, none, where, on), got)
+    merging = relative_errors(places, sheet, ours, ours, ours - finer, where, on)
+    few = math.sqrt((0.1 / 1.1 * 0.1 / 1.1 + 2 * mean**2) / 3)
+    expected = np.array([got[0] / OF_DIFFERENCE, few, mean])
+    np.testing.assert_allclose(merging, OF_MERGING * expected, rtol=1e-2)
+
+
+def test_errors_where_they_are(monkeypatch):
+    """A wall that errs at its top alone: told there, and little below; some elements at a time or all at once."""
+    rng = np.random.default_rng(3)
+    places, where = rng.uniform(0, 1, (40, 3)) * [3, 0, 3], rng.uniform(0, 1, (500, 3)) * [3, 0, 3]
+    finer = np.where(places[:, 2] > 2, 105.0, 100.1)
+    given = places, np.zeros(40, int), np.full(40, 100.0), finer, np.zeros(40), where, np.zeros(500, int)
+    got = relative_errors(*given) / OF_DIFFERENCE
+    assert got[where[:, 2] > 2.3].min() > 0.025
+    assert np.median(got[where[:, 2] < 1]) < 0.015
+    monkeypatch.setattr(estimate, "_BLOCK", 400)
+    np.testing.assert_allclose(relative_errors(*given) / OF_DIFFERENCE, got)
 
 
 def test_errors_without_samples_or_light():
-    np.testing.assert_array_equal(relative_errors(trial_of([]), np.zeros(0, int), *[np.zeros(0)] * 3, 2), LEAST)
-    got = relative_errors(trial_of([0, 1]), np.zeros(2, int), *[np.zeros(2)] * 3, 1)
-    assert got.tolist() == [0]
+    where, one = np.zeros((2, 3)), np.zeros(2, int)
+    none = np.zeros(0)
+    got = relative_errors(np.zeros((0, 3)), np.zeros(0, int), none, none, none, where, one)
+    np.testing.assert_array_equal(got, LEAST)
+    dark = relative_errors(where, one, *[np.zeros(2)] * 3, where, one)
+    np.testing.assert_array_equal(dark, 0)
 
 
 def test_facets_that_share_receivers_know_what_they_differ_by(monkeypatch):
