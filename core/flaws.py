@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import polygons
+from .planes import Planes
 from .scene import Surface
 
 ERROR, WARNING = "error", "warning"
@@ -14,6 +15,7 @@ OF_MESHES = ("no area", "not flat", "turned over in a mesh")
 """Kinds that are known, and told, as soon as a mesh is added."""
 
 _SAME_NORMAL = 1e-6
+_UPRIGHT, _ALIKE, _THIN_PANE, _EDGES = 1e-3, 0.1, 0.1, 3
 _MOST_PAIRS = 5_000_000
 _MOST_CONVEX_SHEETS = 2_000
 _CLOSED_ENOUGH = 0.5
@@ -65,6 +67,38 @@ def mesh_flaws(surface: Surface) -> list[Finding]:
         warning(kind, {surface.name: faces}, f"Surface '{surface.name}': {said}", remedy)
         for kind, (faces, said, remedy) in surface.flaws.items()
     ]
+
+
+def thick_panes(surfaces: list[Surface], planes: Planes) -> list[Finding]:
+    """Panes drawn as solids, whose light passes two sides with the whole pane's transmittance each."""
+    areas = np.bincount(planes.outline_sheet, polygons.areas(planes.outlines), len(planes.sheet_surface))
+    heights = np.einsum("oc,oc->o", planes.sheet_normal[planes.outline_sheet], planes.outlines[:, 0])
+    height = np.zeros(len(areas))
+    height[planes.outline_sheet] = heights
+    found = []
+    for number, surface in enumerate(surfaces):
+        sheets = np.flatnonzero(planes.sheet_surface == number)
+        if not surface.material.is_transparent or not 5 <= len(sheets) <= _MOST_CONVEX_SHEETS:
+            continue
+        front = sheets[np.argmax(areas[sheets])]
+        cosine = planes.sheet_normal[sheets] @ planes.sheet_normal[front]
+        backs, edges = sheets[cosine < _SAME_NORMAL - 1], sheets[np.abs(cosine) < _UPRIGHT]
+        thick = np.abs(height[front] + height[backs])
+        alike = np.abs(areas[backs] - areas[front]) < _ALIKE * areas[front]
+        thin = backs[alike & (thick < _THIN_PANE * np.sqrt(areas[front]))]
+        if len(thin) and len(edges) >= _EDGES:
+            width = 1000 * float(np.abs(height[front] + height[thin]).min())
+            concerned = np.isin(planes.given_sheet, [front, *thin])
+            found.append(
+                warning(
+                    "glass twice",
+                    {surface.name: np.unique(planes.given_source[concerned])},
+                    f"Surface '{surface.name}' is a solid {width:.3g} mm thick that light goes straight through: it "
+                    "passes two panes, each with the whole transmittance",
+                    "draw the pane as one sheet",
+                )
+            )
+    return found
 
 
 def overlapping_outlines(outlines, normals, offsets, tolerance: float) -> np.ndarray:

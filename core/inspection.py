@@ -36,7 +36,8 @@ def check(scene: Scene) -> tuple[Finding, ...]:
 
     Looks for normals that are inverted or turned over, gaps where light leaks, one-sided walls seen from behind, faces
     that overlap, are not flat, have no area or are tiny, wrong units, spaces without an opening, materials without
-    settings, reflectances that no paint or mirror has, and chains of mirrors that cost much.
+    settings, reflectances that no paint or mirror has, panes drawn as solids or without a hole in the wall, and chains of
+    mirrors that cost much.
 
     Parameters
     ----------
@@ -75,6 +76,7 @@ def inspect(scene: Scene, planes: Planes) -> tuple[Finding, ...]:
     found = [finding for surface in surfaces for finding in flaws.mesh_flaws(surface)]
     found += _materials(surfaces)
     found += _sizes(surfaces, planes)
+    found += flaws.thick_panes(surfaces, planes)
     normals = planes.sheet_normal[planes.outline_sheet]
     offsets = np.einsum("oc,oc->o", normals, planes.outlines[:, 0])
     pairs = planes.outline_sheet[flaws.overlapping_outlines(planes.outlines, normals, offsets, tolerance)]
@@ -225,8 +227,9 @@ def _sizes(surfaces: list[Surface], planes: Planes) -> list[Finding]:
 
 
 def _overlaps(surfaces: list[Surface], planes: Planes, pairs, opposite, tolerance: float) -> list[Finding]:
-    two_sided = np.array([surface.two_sided for surface in surfaces])[planes.sheet_surface]
-    meeting = pairs[~opposite | two_sided[pairs].any(axis=1)]  # one-sided back to back: a sheet with two sides
+    both = np.array([surface.two_sided or surface.material.is_transparent for surface in surfaces])
+    # one-sided back to back: a sheet with two sides
+    meeting = pairs[~opposite | both[planes.sheet_surface][pairs].any(axis=1)]
     found: list[Finding] = []
     of = planes.sheet_surface[meeting]
     every = np.unique(np.sort(of, axis=1), axis=0)
@@ -245,6 +248,9 @@ def _overlaps(surfaces: list[Surface], planes: Planes, pairs, opposite, toleranc
                 "which of them light meets is not defined"
             )
             remedy = "remove one, or move them apart"
+            if a.material.is_transparent != b.material.is_transparent:
+                pane, wall = (a.name, b.name) if a.material.is_transparent else (b.name, a.name)
+                remedy = f"cut an opening for '{pane}' into '{wall}', or move them apart"
         found.append(warning("overlap", concerned, said, remedy))
     if len(every) > _TOLD:
         said = f"{len(every) - _TOLD} more pairs of surfaces lie on one another"

@@ -9,6 +9,7 @@ GREY = luz.Material(diffuse_reflectance=0.5)
 WHITE = luz.Material(diffuse_reflectance=0.8)
 LAMP = luz.Material(exitance=1000.0)
 MIRROR = luz.Material(specular_reflectance=0.9)
+GLASS = luz.Material(regular_transmittance=0.88, refractive_index=1.52)
 SIZE = (4, 3, 2.5)
 
 
@@ -148,6 +149,16 @@ FAULTS = {
         ),
         "overlap",
         {"mesh": [0, 2]},
+    ),
+    "a window without a hole": (
+        lambda: room({"pane": np.array([[1, 0, 1], [2, 0, 1], [2, 0, 2], [1, 0, 2]], float)}, pane=GLASS),
+        "overlap",
+        {"pane": [0], "south": [0]},
+    ),
+    "a pane drawn as a solid": (
+        lambda: with_mesh(*solid([0.01, 2.9, 0.01], [3.98, 0.006, 2.48]), GLASS),
+        "glass twice",
+        {"mesh": [2, 3]},
     ),
     "a bent face": (dented, "not flat", {"mesh": [5]}),
     "a face without area": (

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders import UNIFORM, prepare_coarse
-from planted_faults import FAULTS, GREY, moved, rectangle, room, solid, turned
+from planted_faults import FAULTS, GLASS, GREY, moved, rectangle, room, solid, turned
 
 import luzespecular as luz
 from luzespecular import looks
@@ -79,6 +79,28 @@ def test_what_is_drawn_well_is_not_blamed():
     scene.add("poster", [[1e-3, 1, 1], [1e-3, 2, 1], [1e-3, 2, 2], [1e-3, 1, 2]], GREY)
     scene.add("curtain", [[2, 2.9, 0.5], [3, 2.9, 0.5], [3, 2.9, 2], [2, 2.9, 2]], GREY, two_sided=True)
     assert [str(f) for f in luz.check(scene)] == []
+
+
+def test_panes_drawn_well_are_not_blamed():
+    """Double glazing, of two surfaces or in one; a showcase of glass; a pane that stands on a wall's edge."""
+    sheet = np.array([[0, 3, 0], [4, 3, 0], [4, 3, 2.5], [0, 3, 2.5]])
+    for panes in ({"one": sheet, "two": np.add(sheet, [0, 0.02, 0])}, {"one": sheet}):
+        assert not luz.check(room(panes, **dict.fromkeys(panes, GLASS)))
+    scene = room()
+    scene.add(
+        "panes", np.concatenate([sheet, np.add(sheet[::-1], [0, 0.02, 0])]), GLASS, faces=[[0, 1, 2, 3], [4, 5, 6, 7]]
+    )
+    vertices, faces = solid([1, 1, 0.5], [0.6, 0.6, 0.4])
+    scene.add("showcase", vertices, GLASS, faces=faces)
+    assert not luz.check(scene)
+
+
+def test_a_window_without_a_hole_is_told_what_to_do():
+    """Whichever way the pane looks."""
+    for turn in (1, -1):
+        pane = np.array([[1, 0, 1], [2, 0, 1], [2, 0, 2], [1, 0, 2]], float)[::turn]
+        (finding,) = luz.check(room({"pane": pane}, pane=GLASS))
+        assert finding.remedy == "cut an opening for 'pane' into 'south', or move them apart"
 
 
 def test_how_wide_a_gap_is():

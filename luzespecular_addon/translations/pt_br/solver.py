@@ -25,6 +25,7 @@ KINDS = {
     "endless reflection": "reflexão sem fim",
     "far away": "longe da origem",
     "gap": "fresta",
+    "glass twice": "vidro em dobro",
     "inside out": "do avesso",
     "inverted normals": "normais invertidas",
     "many panes": "muitos vidros",
@@ -136,6 +137,15 @@ SOLVER = {
         "define qual delas a luz encontra"
     ),
     "remove one, or move them apart": "retire uma, ou afaste-as",
+    "cut an opening for '{pane}' into '{wall}', or move them apart": (
+        "recorte uma abertura para '{pane}' em '{wall}', ou afaste-as"
+    ),
+    "Surface '{name}' is a solid {width} mm thick that light goes straight through: "
+    "it passes two panes, each with the whole transmittance": (
+        "A superfície '{name}' é um sólido de {width} mm de espessura que a luz atravessa: "
+        "ela passa por dois vidros, cada um com toda a transmitância"
+    ),
+    "draw the pane as one sheet": "desenhe o vidro como uma só folha",
     "{count} more pairs of surfaces lie on one another": "Mais {count} pares de superfícies estão uma sobre a outra",
     "All surfaces look outward and none sees another": "Todas as superfícies olham para fora e nenhuma vê outra",
     "if this is a room seen from inside, turn its normals (Edit Mode: Mesh > Normals > Recalculate Inside)": (
