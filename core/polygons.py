@@ -505,12 +505,28 @@ _FEWEST = 60
 """Coordinates up to which plain numbers are cut faster than arrays."""
 
 
+def parted(polygons, normal, offset) -> tuple[np.ndarray, np.ndarray]:
+    """Parts of convex polygons ``(m, v, 3)`` on both sides of a plane: with ``normal · x ≤ offset``, and with ``≥``."""
+    if polygons.size > _FEWEST:
+        return clip(polygons, -normal, -offset), clip(polygons, normal, offset)
+    heights = _heights(polygons.tolist(), normal, offset)
+    return _cut_few(polygons, [[-s for s in some] for some in heights]), _cut_few(polygons, heights)
+
+
 def _clip_few(p, normal, offset) -> np.ndarray:
+    return _cut_few(p, _heights(p.tolist(), normal, offset))
+
+
+def _heights(corners: list, normal, offset) -> list[list[float]]:
     a, b, c = normal.tolist()
     h = float(offset)
+    return [[a * x + b * y + c * z - h for x, y, z in some] for some in corners]
+
+
+def _cut_few(p, every: list[list[float]]) -> np.ndarray:
+    """As `clip`, by the heights of all corners."""
     found, width, same = [], 0, True
-    for corners in p.tolist():
-        heights = [a * x + b * y + c * z - h for x, y, z in corners]
+    for corners, heights in zip(p.tolist(), every, strict=True):
         if min(heights) >= 0:
             kept = corners
         elif max(heights) < 0:

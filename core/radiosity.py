@@ -98,8 +98,9 @@ def all_settled(exchange, reflectance: np.ndarray, initial: np.ndarray) -> np.nd
     """
     _bounded(largest_gain(exchange, reflectance))
     matrix = exchange.factors.astype(np.float32)
-    made_up = np.outer(exchange.spread, exchange.missing).astype(np.float32)
-    made_up[exchange.part[:, None] != exchange.part] = 0.0
+    made_up = np.outer(exchange.spread.astype(np.float32), exchange.missing.astype(np.float32))
+    if (exchange.part != exchange.part[:1]).any():
+        made_up[exchange.part[:, None] != exchange.part] = 0.0
     matrix += made_up
     matrix *= -reflectance.astype(np.float32)
     matrix[np.diag_indices_from(matrix)] += 1.0

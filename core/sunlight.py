@@ -182,14 +182,17 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
         meets = (high > tolerance) & facing & (present[lit[some], None] != present)
         meets &= _meet(walls, regions[some], tolerance).T & _meet(around, vertices, tolerance)
         for j, k in enumerate(lit[some].tolist()):
-            pieces = regions[first + j][None], np.ones(1)
+            region = regions[first + j][None]
+            pieces = region, np.ones(1)
             for b in foremost[meets[j, foremost]].tolist():
                 nearer, prism_of = vertices[b], (walls[0][b], walls[1][b])
+                known = pieces[0] is region and low[j, b] >= 0
                 if low[j, b] < 0:
                     (nearer,) = polygons.clip(nearer[None], upstream[first + j], start[first + j])
                     normals, offsets = prism(nearer[None], beam.travel, cosine[b : b + 1])
                     prism_of = normals[0], offsets[0]
-                pieces = _shadow(outlines, pieces, nearer, prism_of, int(present[b]), beam.travel)
+                asked = None if known else nearer  # that the whole region is met is known
+                pieces = _shadow(outlines, pieces, prism_of, asked, side[k], int(present[b]), beam.travel)
                 if not len(pieces[0]):
                     break
             shown = wide(pieces[0], tolerance)
@@ -214,25 +217,31 @@ def _meet(walls, shapes, tolerance: float) -> np.ndarray:
     return (reach > tolerance + offsets[:, :, None]).all(axis=1)
 
 
-def _shadow(outlines: Outlines, pieces, blocker, walls, outline: int, travel):
-    """Pieces ``(m, v, 3)`` and their factors ``(m,)`` less a blocker's shadow; behind a pane it is kept, dimmed."""
+def _shadow(outlines: Outlines, pieces, walls, blocker: np.ndarray | None, side: float, outline: int, travel):
+    """Pieces ``(m, v, 3)`` of an outline and their factors ``(m,)`` less a shadow; behind a pane it is kept, dimmed.
+
+    ``walls`` bound the shadow. ``blocker``: its corners, to tell the pieces that it does not meet; None: it meets all.
+    ``side`` is the sign of ``normal · travel`` of the pieces.
+    """
     tolerance = outlines.tolerance
     batch, factors = pieces
     normals, offsets = walls
-    # what lies beside the shadow stays whole
-    meets = ((batch @ normals.T - offsets).max(axis=1) > tolerance).all(axis=1)
-    if meets.any():
-        around, at = prism(batch[meets], travel, np.sign(polygons.newell_normal(batch[meets]) @ travel))
-        meets[meets] = ((around @ blocker.T - at[:, :, None]).max(axis=2) > tolerance).all(axis=1)
-    if not meets.any():
-        return pieces
+    heights = batch @ normals.T - offsets
+    meets = np.ones(len(batch), bool)
+    if blocker is not None:  # what lies beside the shadow stays whole
+        meets = (heights.max(axis=1) > tolerance).all(axis=1)
+        if meets.any():
+            around, at = prism(batch[meets], travel, np.array([side]))
+            meets[meets] = ((around @ blocker.T - at[:, :, None]).max(axis=2) > tolerance).all(axis=1)
+        if not meets.any():
+            return pieces
     left = [(batch[~meets], factors[~meets])]
     inside, factors = batch[meets], factors[meets]
-    for normal, offset in zip(normals, offsets, strict=True):
-        if np.isinf(offset) or (inside @ normal - offset).min() >= 0:
-            continue
-        left.append((polygons.clip(inside, -normal, -offset), factors))
-        inside = polygons.clip(inside, normal, offset)
+    for edge in np.flatnonzero((heights[meets] < 0).any(axis=(0, 1))).tolist():
+        normal, offset = normals[edge], offsets[edge]
+        if (inside @ normal - offset).min() < 0:
+            outside, inside = polygons.parted(inside, normal, offset)
+            left.append((outside, factors))
     material = outlines.materials[outline]
     if material.is_transparent:
         through = float(material.transmittance_at(outlines.normals[outline] @ travel))

@@ -395,3 +395,14 @@ def test_stars_of_many_points_are_parted_in_few_steps(points, monkeypatch):
     assert sum(flat_area(p) for p in parts) == pytest.approx(flat_area(star))
     assert len(parts) <= points + 3
     assert len(asked) < points**2 / 3  # neighbours that neither grew are tried once, not after each join
+
+
+@pytest.mark.parametrize("count", [1, 40])
+def test_both_sides_of_a_plane_at_once(count):
+    rng = np.random.default_rng(count)
+    shapes = np.cumsum(rng.uniform(0, 1, (count, 4, 3)), axis=1)
+    for offset in (-9.0, 0.7, 9.0):
+        normal = np.array([0.6, 0.0, -0.8])
+        beyond, within = polygons.parted(shapes, normal, offset)
+        np.testing.assert_array_equal(beyond, polygons.clip(shapes, -normal, -offset))
+        np.testing.assert_array_equal(within, polygons.clip(shapes, normal, offset))
