@@ -20,8 +20,11 @@ _FAINT = 3e-4
 fewer that show as much, and go on one way: else they would double at every pane."""
 
 _MOST_IMAGES = 80
-_MOST_OF_SOURCES = 400
-"""Images of mirrors times luminous polygons."""
+_MOST_OF_SOURCES, _MOST_OF_FIRST = 400, 2_000
+"""Images times luminous polygons, in all orders and in the first."""
+
+_MOST_MIRRORS = 140
+"""Of more none is looked into for polygons: each makes a sun patch, so that their images would be as many squared."""
 
 _DEEPEST_IMAGE = 40
 _WALLS_OF_BOX = 6
@@ -52,13 +55,15 @@ def exact_mirrors(outlines: Outlines) -> int:
     """How many mirrors on the way leave images few enough to be looked for one by one.
 
     Between n mirrors there are at most n (n − 1)^(k − 1) images of order k; between up to six at right angles, as walls
-    of a box are, about 4 k² + 2. Those of the first order are all looked for.
+    of a box are, about 4 k² + 2. Those of the first order are looked for even where they are many.
     """
     mirrors = np.flatnonzero([m.is_specular for m in outlines.materials])
     n, box = len(mirrors), _at_right_angles(outlines.normals[mirrors])
     shining = np.array([m.exitance > 0 for m in outlines.materials])
     sources = int(shining.sum() + (shining & outlines.two_sided).sum())
     most = min(_MOST_IMAGES, _MOST_OF_SOURCES // max(sources, 1))
+    if n > _MOST_MIRRORS or n * sources > _MOST_OF_FIRST:
+        return 0
     images, order = 0, 0
     while order < _DEEPEST_IMAGE:
         every = n * max(n - 1, 1) ** order

@@ -250,7 +250,7 @@ def test_no_mirror_no_chains():
 
 @pytest.mark.parametrize(
     ("mirrors", "deepest"),
-    [(0, 40), (1, 40), (2, 40), (3, 4), (4, 3), (6, 3), (7, 2), (10, 1), (100, 1)],
+    [(0, 40), (1, 40), (2, 40), (3, 4), (4, 3), (6, 3), (7, 2), (10, 1), (100, 1), (150, 0)],
 )
 def test_how_many_mirrors_are_looked_into_one_by_one(mirrors, deepest):
     """Two facing mirrors: all images to the cut-off. A box: the first 62. More tiles of mirror: each, once."""
@@ -263,7 +263,7 @@ def test_how_many_mirrors_are_looked_into_one_by_one(mirrors, deepest):
 
 
 @pytest.mark.parametrize(
-    ("lamps", "aslant", "deepest"), [(0, 0.0, 3), (4, 0.0, 3), (20, 0.0, 1), (0, 0.3, 2), (4, 0.3, 2)]
+    ("lamps", "aslant", "deepest"), [(240, 0.0, 0), (0, 0.0, 3), (4, 0.0, 3), (20, 0.0, 1), (0, 0.3, 2), (4, 0.3, 2)]
 )
 def test_images_are_fewer_where_many_surfaces_shine_or_mirrors_stand_aslant(lamps, aslant, deepest):
     """The images of six mirrors at any angle are as many as the ways between them; each lamp shows in all of them."""

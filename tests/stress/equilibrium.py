@@ -179,6 +179,8 @@ def situations() -> Iterator[Situation]:
     within = inside * 0.3 + [1.5, 1.0, 1.9]
     yield row("a closed room of mixed walls", lambda: even(closed(warm(0.7), floor=warm(0.1)), DARK, within))
     yield row("a closed room with a mirror", lambda: even(closed(warm(0.7), west=warm(0, 0.8)), DARK, within))
+    between = warm(0.2, 0.1, 0.5)
+    yield row("two mirrors and a partly diffuse pane between", lambda: even(_facing(between), DARK, within), True)
     for name, wall, piece in (
         ("grey boxes", warm(0.7), warm(0.3)),
         ("mirror boxes", warm(0.5), warm(0, 0.7)),
@@ -197,12 +199,26 @@ def situations() -> Iterator[Situation]:
     yield row(
         "a ball from outside", lambda: even(ball(warm(0.8), False), AROUND, 2 * inside / np.abs(inside).max(1)[:, None])
     )
-    yield row("a ball in a room", lambda: even(_ball_in_a_room(), DARK, within), True)
+    yield row("a ball in a room", lambda: even(_ball_in_a_room(white), DARK, within), True)
+    yield row("a luminous mirror ball in a room", lambda: even(_ball_in_a_room(warm(0, 0.6)), DARK, within))
+    finer = _ball_in_a_room(warm(0, 0.6), True)
+    yield row("a luminous ball of 320 mirrors in a room", lambda: even(finer, DARK, within), True)
 
 
-def _ball_in_a_room() -> luz.Scene:
+def _facing(pane: luz.Material) -> luz.Scene:
+    scene = closed(warm(0.5), west=warm(0, 0.9), east=warm(0, 0.9))
+    scene.add("pane", [[1.4, 0, 0], [1.4, 2, 0], [1.4, 2, 2.5], [1.4, 0, 2.5]], pane, two_sided=True)
+    return scene
+
+
+def _ball_in_a_room(material: luz.Material, finer: bool = False) -> luz.Scene:
     scene = closed(warm(0.6))
-    corners = ball(warm(), False).surfaces["ball"].pieces.reshape(-1, 3)
-    white = luz.Material(diffuse_reflectance=1.0)
-    scene.add("ball", 0.4 * corners + [1.5, 1, 0.9], white, faces=np.arange(len(corners)).reshape(-1, 3))
+    facets = ball(warm(), False).surfaces["ball"].pieces
+    if finer:
+        middles = 0.5 * (facets + np.roll(facets, -1, axis=1))
+        before = np.roll(middles, 1, axis=1)
+        facets = np.concatenate([middles, *np.stack([facets, middles, before], axis=2).swapaxes(0, 1)])
+        facets /= np.linalg.norm(facets, axis=2, keepdims=True)
+    corners = 0.4 * facets.reshape(-1, 3) + [1.5, 1, 0.9]
+    scene.add("ball", corners, material, faces=np.arange(len(corners)).reshape(-1, 3))
     return scene
