@@ -36,8 +36,8 @@ def check(scene: Scene) -> tuple[Finding, ...]:
 
     Looks for normals that are inverted or turned over, gaps where light leaks, one-sided walls seen from behind, faces
     that overlap, are not flat, have no area or are tiny, wrong units, spaces without an opening, materials without
-    settings, reflectances that no paint or mirror has, panes drawn as solids or without a hole in the wall, and chains of
-    mirrors that cost much.
+    settings, reflectances that no paint or mirror has, panes drawn as solids or without a hole in the wall, and
+    chains of mirrors that cost much.
 
     Parameters
     ----------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+import by_paths
 import degenerate
 import drawing
 import energy
@@ -25,7 +26,7 @@ from situations import Situation
 
 ROOMS = (
     *(known_answers, invariance, degenerate, drawing, energy, lights, extent, precision),
-    *(equilibrium, glass, kept, meshes, openings, shapes, sides, year),
+    *(equilibrium, glass, kept, meshes, openings, shapes, sides, year, by_paths),
 )
 ALIKE = (
     *("E01-scale1", "E01-scale2", "E02-translate0", "E02-translate1", "E02-translate2", "E03-rotz1", "E03-rotz2"),
