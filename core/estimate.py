@@ -44,7 +44,7 @@ OF_MERGING = 0.4
 OF_SPREAD = 2.0
 """The same over the root mean square of what facets get more or less than the mean that they share."""
 
-OF_DOUBT = 0.5
+OF_DOUBT = 0.3
 """The same for interpolation, over the surprise of the nodes around."""
 
 _NEAR, _FALL = 0.25, 1.5
@@ -147,10 +147,10 @@ def make_trial(
 
 
 def _on_globe(geometry: Geometry, times: float) -> Geometry:
-    """With so many times as many bands, and cells as patches."""
-    bands = max(2, round(times * geometry.targets.globe.bands))
-    targets = Targets.of(geometry.planes, geometry.cells.patches, Globe.cut_at_horizon(bands))
-    return replace(geometry, targets=targets)
+    """With beams of so many times as many bands, on a sky of as many, and cells as patches."""
+    globe = Globe.cut_at_horizon(max(2, round(times * geometry.beams.bands)))
+    targets = Targets.of(geometry.planes, geometry.cells.patches, globe)
+    return replace(geometry, targets=targets, beams=globe)
 
 
 def _look_from_facets(geometry: Geometry, nodes: Nodes, limits: ChainLimits, threads: int) -> Facets:

@@ -10,9 +10,21 @@ TRIAL_TIMES = 0.25
 
 FEWEST_BANDS, MOST_BANDS = 20, 160
 
+_ENOUGH_BANDS, _OF_BANDS = 24, 0.4
+"""What sees the edges of the sky exactly sees surfaces well enough by so many bands, and by this share of the sky's."""
+
 _USUAL_ACCURACY = 0.01
 _SHARE_OF_GLOBE = 0.5
 """What of the error asked for the globe may take; the rest is for means over faces and patches."""
+
+
+def receiver_bands(bands: int) -> int:
+    """Bands by which faces' receivers look at a sky of ``bands``: fewer, where these are enough.
+
+    What of a beam an edge leaves is exact however wide it is. So wider beams cost little but the sky's and the
+    surfaces' unevenness within them, and faces' values are means over their neighbourhood anyway.
+    """
+    return max(min(bands, _ENOUGH_BANDS), round(_OF_BANDS * bands))
 
 
 def times_for(accuracy: float) -> float:

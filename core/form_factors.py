@@ -18,7 +18,7 @@ from .scattered import scattered_sight
 from .specular import GroupSight
 from .tracing import ChainLimits
 
-_CHUNK_CELLS = 500_000
+_CHUNK_CELLS = 200_000
 """Receivers times beams looked at together: they stay in cache, and matrix products are too small for BLAS to split."""
 
 _MOST_SIGHTS = 100
@@ -30,11 +30,23 @@ _ROOM = 1.5
 _UNHIDDEN_ROWS = 200
 """Receivers of one plane that are looked from together where nothing stands in the way."""
 
+_FOR_ONE_THREAD = 200
+"""Fewer receivers are looked from in one thread: several would wait for each other."""
+
 _SCATTERED = 64
 """Receivers of many facets each that are looked from together."""
 
+_DARK = 1e-9
+"""Mean form factor to the sky below which none is seen."""
+
 _GROUPS = 32
 _ROWS = 256
+_CYCLES, _REFLECTANCE = 4, 0.5
+"""Reflections after which surfaces are about as bright as they will be, and of how much, whatever they reflect now."""
+
+_DARKEST = 1e-6
+"""No surface counts as less bright than this share of their mean."""
+
 _OF_REFLECTED = 0.2
 """About how bright surfaces are beside the sky that they show with."""
 
@@ -167,7 +179,7 @@ def gather_nodes(
 def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, limits, threads: int, report) -> None:
     """Fill the rows of some nodes."""
     # so many that receivers times beams stay in cache
-    most = max(8, _CHUNK_CELLS // max(geometry.targets.globe.count // 2, 1))
+    most = max(8, _CHUNK_CELLS // max(geometry.beams.count // 2, 1))
     sheets = nodes.sheet
     shared = members[np.isin(members, nodes.shared)]
     scattered = [shared[k : k + _SCATTERED] for k in range(0, len(shared), _SCATTERED)]
@@ -183,13 +195,14 @@ def _gather_some(geometry: Geometry, nodes: Nodes, members, rows: Rows, sights, 
         sight = sights.get(sheet)
         if sight is None:
             normal = geometry.element_normals[nodes.element[chunk[0]]]
-            sight = sight_of(geometry, limits, normal, float(normal @ nodes.points[chunk[0]]))
+            sight = sight_of(geometry, limits, normal, float(normal @ nodes.points[chunk[0]]), geometry.beams)
             if len(sights) < _MOST_SIGHTS:
                 sights[sheet] = sight
         rows.put(chunk, gather(sight, nodes.points[chunk], geometry.targets, checkpoint))
 
     tasks = [(from_one_plane, chunk) for chunk in chunks] + [(from_facets, chunk) for chunk in scattered]
-    run_parallel(lambda task, checkpoint: task[0](task[1], checkpoint), tasks, threads, report)
+    few = len(members) + len(shared) < _FOR_ONE_THREAD
+    run_parallel(lambda task, checkpoint: task[0](task[1], checkpoint), tasks, 1 if few else threads, report)
 
 
 def _gather_unhidden(
@@ -204,6 +217,22 @@ def _gather_unhidden(
 
     chunks = chunks_of_receivers(nodes.points[members], nodes.sheet[members], geometry.planes, _UNHIDDEN_ROWS)
     run_parallel(work, [members[chunk] for chunk in chunks], threads, report)
+
+
+def _brightness(geometry: Geometry, nodes: Nodes, rows: Rows) -> np.ndarray:
+    """(p,) float: exitance of the patches below an even sky, about, over the sky's; all alike where none is seen."""
+    sky = rows.sky_direct.sum(axis=1, dtype=float)
+    if len(rows.sky_specular):
+        sky += rows.sky_specular.sum(axis=1, dtype=float)
+    areas = geometry.fracture.element_areas
+    if float(geometry.patch_sums(areas * nodes.on_elements(sky)).sum()) <= _DARK * float(geometry.patch_areas.sum()):
+        return np.ones(geometry.targets.patches.count)
+    exitance = np.zeros(geometry.targets.patches.count, np.float32)
+    for _ in range(_CYCLES):
+        illuminance = nodes.on_elements(sky + rows.form_factors @ exitance)
+        means = geometry.patch_sums(areas * illuminance) / geometry.patch_areas
+        exitance = (_REFLECTANCE * means).astype(np.float32)
+    return exitance + _DARKEST * exitance.mean()
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,9 +276,9 @@ class Light:
         return Light(np.concatenate([self.sky, other.sky]), np.concatenate([self.reflected, other.reflected]))
 
     def kinds(self) -> np.ndarray:
-        """(m, 4 + g) float: all kinds of light, surfaces about as bright as they will be."""
+        """(m, 4 + g) float: all kinds of light, surfaces about as bright as they will be; groups that give none not."""
         share = _OF_REFLECTED if self.sky.sum() > 1e-3 * max(float(self.reflected.sum()), 1e-300) else 1.0
-        return np.concatenate([self.sky, share * self.reflected], axis=1)
+        return np.concatenate([self.sky, share * self.reflected[:, self.reflected.any(axis=0)]], axis=1)
 
 
 def patch_means(geometry: Geometry, nodes: Nodes, form_factors: np.ndarray) -> np.ndarray:
@@ -286,8 +315,8 @@ class Conservation:
     """How light that is sent out and seen to stay is made to arrive to the last lumen.
 
     Means over faces and patches err a little, mostly where planes meet, and so would the sum of what arrives. What is
-    missing is spread over all receivers of the same enclosure, as evenly lit surroundings would light them: an even
-    field stays as it is, and no light comes into a room that is closed off.
+    missing is spread over all receivers of the same enclosure, as surroundings below an even sky would light them, or
+    without sky even ones: an even field stays as it is, and no light comes into a room that is closed off.
 
     Attributes
     ----------
@@ -320,10 +349,11 @@ class Conservation:
         weights = nodes.weights
         share = weights.gathered(kept, len(nodes.points))
         landed, seen = np.zeros(geometry.targets.patches.count), np.zeros(len(share))
+        brightness = _brightness(geometry, nodes, rows)
         for first in range(0, len(share), _ROWS):
             some = rows.form_factors[first : first + _ROWS].astype(float)
             landed += share[first : first + _ROWS] @ some
-            seen[first : first + _ROWS] = some.sum(axis=1)
+            seen[first : first + _ROWS] = some @ brightness
         sent = geometry.patch_sums(area * (1 - lost))
         for profile in geometry.targets.patches.profiles:
             profile.evened(sent, landed)

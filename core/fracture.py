@@ -23,7 +23,7 @@ MOST_FACES = 5_000_000
 FEWEST_ELEMENTS = 4_000
 """Receivers that the diffuse surfaces have together, however coarse their faces are."""
 
-ELEMENTS_PER_PLAIN_SURFACE = 200
+ELEMENTS_PER_PLAIN_SURFACE = 100
 """Receivers inside a surface that neither emits nor reflects diffusely, and so is not cut itself."""
 
 MOST_FINER, TIMES_FINER = 40_000, 4

@@ -8,8 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from .arrays import dots
+from .arrays import dots, onto
 from .globe import Globe
+from .hemisphere import Hemisphere
 from .patches import Patches
 from .planes import Planes
 from .sighting import Sighting
@@ -22,6 +23,9 @@ _BESIDE_BORDERS = 2e-4
 rounding shall not decide to which side."""
 
 _SKY_SUBDIVISION = 4
+
+_WITHIN_BEAM = 5
+"""Order of the lattice of rays that stand for a mirrored beam wider than the sky's parcels: five."""
 
 _FEW = 30
 """What goes to fewer than one in so many places is sorted, rather than the whole matrix gone through."""
@@ -245,6 +249,9 @@ def _add_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
         return
     parcels = s.beams.hemisphere.parcels[s.beams.columns]
     free = np.where(s.view.seen == OPEN, s.weights, 0.0)
+    if s.beams.hemisphere.globe is not targets.globe:
+        out[s.rows] += _spread_over_sky(free, parcels, s.beams.hemisphere, targets)
+        return
     above = parcels < targets.sky_parcels
     if len(s.rows) == len(out):
         out[:, parcels[above]] += free[:, above]
@@ -259,10 +266,36 @@ def _add_mirrored_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
     free = np.flatnonzero((s.view.seen == OPEN) & (s.weights > 0))
     row, beam = np.divmod(free, s.weights.shape[1])
     weight = s.weights[row, beam]
-    parcels, shares = _columns(s.beams.directions, targets)
+    if s.beams.hemisphere.globe is targets.globe:
+        parcels, shares = _columns(s.beams.directions, targets)
+    else:
+        rays = s.beams.rays(np.arange(s.weights.shape[1]), _WITHIN_BEAM)
+        parcels, shares = (found.reshape(len(rays), -1) for found in _columns(rays.reshape(-1, 3), targets))
+        shares = shares / rays.shape[1]
     flat = s.rows[row, None] * targets.columns + parcels[beam]
     shares = weight[:, None] * shares[beam]
     _add(out, flat.ravel(), shares.ravel())
+
+
+def _spread_over_sky(free: np.ndarray, parcels: np.ndarray, hemisphere: Hemisphere, targets: Targets) -> np.ndarray:
+    """(r, c) float32: weights ``(r, k)`` of beams, parcels of another globe, shared out among the sky's parcels."""
+    lit = np.flatnonzero(free.any(axis=0))
+    place = np.full(hemisphere.globe.count, -1)
+    place[parcels[lit]] = np.arange(len(lit))
+    own, others, solid_angle, direction = hemisphere.globe.shared_with(targets.globe)
+    mine = np.flatnonzero(place[own] >= 0)
+    beam, column = place[own[mine]], np.minimum(others[mine], targets.sky_parcels)
+    share = solid_angle[mine] * np.maximum(onto(direction[mine], hemisphere.normal), 1e-9)
+    share /= np.bincount(beam, weights=share, minlength=len(lit))[beam]
+    order = np.argsort(column, kind="stable")
+    beam, column, share = beam[order], column[order], share[order].astype(np.float32)
+    first = np.flatnonzero(np.diff(column, prepend=-1))
+    spread = np.zeros((len(free), targets.columns), np.float32)
+    if len(first):
+        parts = free.astype(np.float32).T.take(lit, axis=0).take(beam, axis=0)
+        parts *= share[:, None]
+        spread[:, column[first]] = np.add.reduceat(parts, first, axis=0).T
+    return spread
 
 
 def _splat(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) -> None:

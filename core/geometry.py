@@ -16,7 +16,7 @@ from .facets import Facets
 from .fracture import Fracture, fracture
 from .gather import Targets
 from .globe import Globe
-from .layout import Layout
+from .layout import Layout, breadth
 from .outlines import Outlines
 from .patches import make_patches
 from .planes import Planes
@@ -43,6 +43,8 @@ class Geometry:
     fracture : Fracture
     lattices : list of Layout
     targets : Targets
+    beams : Globe
+        By which the elements' receivers look; free points look by that of the targets.
     outlines : Outlines
     surface_materials : list of Material, one per surface
     wanted : (surfaces,) bool
@@ -55,6 +57,7 @@ class Geometry:
     fracture: Fracture
     lattices: list[Layout]
     targets: Targets
+    beams: Globe
     outlines: Outlines
     surface_materials: list
     wanted: np.ndarray
@@ -168,11 +171,12 @@ def make_geometry(
     max_area: float | None,
     times: float = 1.0,
     receivers: Collection[str] | None = None,
+    beams: Globe | None = None,
 ) -> Geometry:
     """Cut planes into faces, elements and patches, and list the outlines with their materials, doubled ones once.
 
-    ``times`` as many faces and patches as usual are made, where the user gives no ``max_area``. Surfaces that
-    are none of the ``receivers`` are cut into no faces.
+    Receivers look by ``beams``, at many facets by those of the globe. ``times`` as many faces and patches as usual are
+    made, where the user gives no ``max_area``. Surfaces that are none of the ``receivers`` are cut into no faces.
     """
     surfaces = list(scene.surfaces.values())
     planes = seen_once(planes, surfaces)
@@ -186,7 +190,8 @@ def make_geometry(
     if len(cuts.grids) > MANY_FACETS // 2:  # cells of meshes, too many for lattices of their own
         cuts = replace(cuts, grids=tuple(grid for grid in cuts.grids if grid.rows * grid.columns > 1))
     fronts = len(planes.sheet_surface)
-    lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes) for grid in cuts.grids]
+    across = breadth(planes)
+    lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes, across) for grid in cuts.grids]
     cuts = divided(cuts, lattices, planes)
     points = cuts.elements.mean(axis=1)
     normals = (
@@ -217,6 +222,7 @@ def make_geometry(
         cuts,
         lattices,
         Targets.of(planes, patches, globe),
+        globe if beams is None or facets is not None else beams,
         outlines,
         [s.material for s in surfaces],
         wanted,
@@ -225,6 +231,7 @@ def make_geometry(
     )
 
 
-def sight_of(geometry: Geometry, limits: ChainLimits, normal, offset: float) -> GroupSight:
-    """What receivers with this normal, in the plane ``normal · x = offset``, can see."""
-    return GroupSight(geometry.outlines, geometry.targets.globe.hemisphere(normal), offset, limits)
+def sight_of(geometry: Geometry, limits: ChainLimits, normal, offset: float, beams: Globe | None = None) -> GroupSight:
+    """What receivers with this normal, in the plane ``normal · x = offset``, can see by some beams."""
+    hemisphere = (geometry.targets.globe if beams is None else beams).hemisphere(normal)
+    return GroupSight(geometry.outlines, hemisphere, offset, limits)

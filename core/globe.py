@@ -7,6 +7,7 @@ angles are nearly equal and 60 bands give the paper's 5,902 parcels.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -38,6 +39,7 @@ class Globe:
 
     bands: int = 60
     _scattered: dict[int, np.ndarray] = field(default_factory=dict, repr=False)
+    _shared: dict[int, tuple] = field(default_factory=dict, repr=False)
 
     def __post_init__(self):
         if isinstance(self.bands, bool) or not isinstance(self.bands, int | np.integer):
@@ -207,6 +209,42 @@ class Globe:
         polar = np.arccos(np.clip(c0 + (c1 - c0) * down, -1.0, 1.0))
         azimuth = self.azimuth[parcels][:, None] + (across - 0.5) * self.azimuth_width[parcels][:, None]
         return direction_of(polar, azimuth)
+
+    def shared_with(self, other: Globe) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """What parcels have in common with those of another globe, parcel by parcel; found once.
+
+        Parameters
+        ----------
+        other : Globe
+
+        Returns
+        -------
+        own, others : (n,) int
+            Parcels.
+        solid_angle : (n,) float [sr]
+        direction : (n, 3) float
+            Of the middle of what they share.
+        """
+        if other.bands not in self._shared:
+            self._shared[other.bands] = self._common(other)
+        return self._shared[other.bands]
+
+    def _common(self, other: Globe) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        limits = np.union1d(np.rint(self.polar_edges * 1e12), np.rint(other.polar_edges * 1e12)) * 1e-12
+        found = []
+        for upper, lower in itertools.pairwise(limits.tolist()):
+            polar = 0.5 * (upper + lower)
+            bands = [int(polar * globe.bands / np.pi) for globe in (self, other)]
+            counts = [int(globe.parcels_in_band[band]) for globe, band in zip((self, other), bands, strict=True)]
+            starts = [int(globe.band_starts[band]) for globe, band in zip((self, other), bands, strict=True)]
+            turns = np.unique(np.concatenate([np.arange(count + 1) / count for count in counts]))
+            turn, width = 0.5 * (turns[1:] + turns[:-1]), np.diff(turns)
+            own, others = (start + (turn * count).astype(np.int64) for start, count in zip(starts, counts, strict=True))
+            solid_angle = 2 * np.pi * width * (np.cos(upper) - np.cos(lower))
+            found.append((own, others, solid_angle, direction_of(np.full(len(turn), polar), 2 * np.pi * turn)))
+        own, others, solid_angle, direction = (np.concatenate(part) for part in zip(*found, strict=True))
+        order = np.lexsort((others, own))
+        return own[order], others[order], solid_angle[order], direction[order]
 
     def parcel_of(self, directions) -> np.ndarray:
         """Index of the parcel that holds each direction, in constant time.

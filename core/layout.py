@@ -26,6 +26,9 @@ _MOST_BREAKS = 12
 _CLOSE = 4.0
 """Height of an edge above a plane, in cells, up to which the light below changes over few of them."""
 
+_OF_BREADTH = 0.5
+"""Widest spaces between receivers, over the breadth of the scene: far from an opening light falls about as fast."""
+
 _APART = 4
 """Cells at least between the places below two such edges that end stretches."""
 
@@ -43,22 +46,25 @@ class Layout:
         Numbers of the cells that each of them cuts.
     stretches : pair of lists of (first cell, cells)
         Along either axis, between lines of contact.
+    widest : (2,) float
+        Spaces between receivers are no wider along either axis, in cells.
     """
 
     grid: Grid
     contacts: np.ndarray
     crossed: tuple[np.ndarray, ...]
     stretches: tuple[list, list]
+    widest: np.ndarray
 
     @classmethod
-    def of(cls, grid: Grid, sheet: int, planes: Planes) -> Layout:
-        """Layout that suits a run, what touches it and what passes close over it."""
+    def of(cls, grid: Grid, sheet: int, planes: Planes, breadth: float = np.inf) -> Layout:
+        """Layout that suits a run, what touches it and what passes close over it, in a scene of some breadth."""
         touched = _touched(grid, sheet, planes)
         passed = _passed(grid, sheet, planes)
         rows, columns = (
             _stretches(grid.shape[axis], touched[:, :, axis], passed[axis], grid.spacing[axis]) for axis in (0, 1)
         )
-        return cls._with(grid, touched, (rows, columns))
+        return cls._with(grid, touched, (rows, columns), breadth)
 
     @classmethod
     def over(cls, sheet: int, count, axes: np.ndarray, low: np.ndarray, extent: np.ndarray, planes: Planes) -> Layout:
@@ -85,9 +91,10 @@ class Layout:
         return cls._with(grid, _touched(grid, sheet, planes) if few else np.zeros((0, 2, 2)), ([], []))
 
     @classmethod
-    def _with(cls, grid: Grid, touched: np.ndarray, stretches: tuple[list, list]) -> Layout:
+    def _with(cls, grid: Grid, touched: np.ndarray, stretches: tuple[list, list], breadth: float = np.inf) -> Layout:
         contacts = touched[~grid.along_border(touched)]
-        return cls(grid, contacts, tuple(_crossed_cells(line, grid.shape) for line in contacts), stretches)
+        crossed = tuple(_crossed_cells(line, grid.shape) for line in contacts)
+        return cls(grid, contacts, crossed, stretches, _OF_BREADTH * breadth / grid.sides)
 
     @cached_property
     def cut(self) -> np.ndarray:
@@ -96,6 +103,17 @@ class Layout:
         for cells in self.crossed:
             cut[cells] = True
         return cut.reshape(self.grid.shape)
+
+    def beside_askew(self, reach: float) -> np.ndarray:
+        """(k,) int: cells whose middle is nearer than so many cells to a line of contact askew to the run."""
+        lines = self.contacts[(np.abs(self.contacts[:, 1] - self.contacts[:, 0]) > ON_LINE).all(axis=1)]
+        row, column = np.divmod(np.arange(self.grid.rows * self.grid.columns), self.grid.columns)
+        middle = np.stack([row, column], axis=1) + 0.5
+        near = np.zeros(len(middle), bool)
+        for start, end in lines:
+            share = np.clip((middle - start) @ (end - start) / ((end - start) @ (end - start)), 0, 1)
+            near |= np.linalg.norm(middle - start - share[:, None] * (end - start), axis=1) < reach
+        return np.flatnonzero(near)
 
     def cell_of(self, places: np.ndarray) -> np.ndarray:
         """(n,) int: number of the cell that each place ``(n, 2)`` in cells lies in, or next to."""
@@ -111,6 +129,12 @@ class Layout:
             beyond = step[0] * way[:, 1] > step[1] * way[:, 0]
             sides = np.unique(3 * sides + np.where(mine, 1 + beyond, 0), return_inverse=True)[1].reshape(-1)
         return sides
+
+
+def breadth(planes: Planes) -> float:
+    """Middle one of a scene's three extents along its own axes [m]: of a corridor or shaft the larger one across."""
+    corners = np.unique(planes.outlines.reshape(-1, 3), axis=0)
+    return float(2 * np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(corners.T, bias=True))[1], 0)))
 
 
 def _stretches(count: int, contacts: np.ndarray, passed: np.ndarray, spacing: int) -> list:

@@ -20,16 +20,19 @@ from .interpolation import lagrange
 from .layout import Layout
 from .weights import Weights
 
-_FIRST, _GROWTH = 0.5, 0.6
+_FIRST, _GROWTH = 0.6, 0.6
 """Spaces between the lattice's lines, in cells: the first, and how fast they grow with the distance from the border."""
 
-DOUBT = 0.025
+DOUBT = 0.07
 """Surprise of a node (`Nodes.doubt`), relative to all light, from which the elements around get their own receivers."""
+
+_SURE = 0.25
+"""How much of that is allowed where the lattice reaches across a line of contact askew to it: light may end there."""
 
 _CURVE = 0.1
 """Error of one receiver for an element, over the difference between the halves of its cell."""
 
-_SPACES, _FEWEST_CELLS = 10, 2
+_SPACES, _FEWEST_CELLS = 6, 2
 """Widest spaces between lines of nodes: so many in a stretch, but of so many cells at least."""
 
 _HALF = 0.65
@@ -50,7 +53,7 @@ _SHARED = 6_000
 _MOST_SPLITS = 3
 _FEWEST_SPLITS = 100
 
-STEEP = 0.1
+STEEP = 0.25
 """Difference between the halves of a cell, relative to all light, from which several receivers serve each."""
 
 
@@ -74,6 +77,8 @@ class Nodes:
         What the nodes of the lattice would have if their neighbours along one axis, or the other, told it.
     shared : (s,) int
         Nodes that stand for several facets, which do not lie in one plane.
+    askew : (e,) bool
+        Elements whose nodes may lie on the other side of a line of contact, askew to the lattice.
     """
 
     points: np.ndarray
@@ -84,6 +89,7 @@ class Nodes:
     centres: Weights
     foretold: list[Weights]
     shared: np.ndarray
+    askew: np.ndarray
 
     @property
     def sheet(self) -> np.ndarray:
@@ -187,6 +193,7 @@ class Nodes:
             self.centres,
             self.foretold,
             self.shared,
+            self.askew,
         )
 
 
@@ -210,7 +217,7 @@ def settled(
     """
     nodes, values = lattice, evaluate(lattice, 0)
     doubt = nodes.doubt(values)
-    doubtful = np.flatnonzero(doubt > DOUBT / times)
+    doubtful = np.flatnonzero(doubt > np.where(nodes.askew, _SURE, 1.0) * DOUBT / times)
     cost = _own_share(fracture)[doubtful]
     doubtful = _foremost(doubtful, doubt[doubtful], max(_FEWEST_OWN, len(lattice.points)), cost)
     if len(doubtful):
@@ -329,7 +336,7 @@ class _Entries:
         none = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
         self.weights, self.around, self.centres = [none], [none], [none]
         self.foretold = [none], [none]
-        self.several = [none[0]]
+        self.several, self.askew = [none[0]], [none[0]]
 
     def add(self, points, element) -> np.ndarray:
         """Numbers of new nodes."""
@@ -366,7 +373,10 @@ class _Entries:
         on_lattices = 1 + max(int(entries[-1][0].max(initial=-1)) for entries in self.foretold)
         foretold = [_joined(entries, on_lattices) for entries in self.foretold]
         points, elements = np.concatenate(self.points), np.concatenate(self.elements)
-        return Nodes(points, elements, element_sheet, weights, around, centres, foretold, np.concatenate(self.several))
+        askew = np.zeros(count, bool)
+        askew[np.concatenate(self.askew)] = True
+        shared = np.concatenate(self.several)
+        return Nodes(points, elements, element_sheet, weights, around, centres, foretold, shared, askew)
 
 
 def _joined(entries: list, count: int) -> Weights:
@@ -378,8 +388,8 @@ def _enter(lattice: Layout, entries: _Entries) -> None:
     """Add the lattice's nodes, and the weights of all elements that are not cut."""
     grid = lattice.grid
     stretches = [
-        [(a, n, a + _lines(n, spacing)) for a, n in along]
-        for along, spacing in zip(lattice.stretches, grid.spacing, strict=True)
+        [(a, n, a + _lines(n, widest, spacing)) for a, n in along]
+        for along, widest, spacing in zip(lattice.stretches, lattice.widest, grid.spacing, strict=True)
     ]
     lines = [np.concatenate([part[2] for part in along]) for along in stretches]
     rows, columns = np.meshgrid(*lines, indexing="ij")
@@ -388,6 +398,9 @@ def _enter(lattice: Layout, entries: _Entries) -> None:
     numbers = entries.add(points, grid.first + 2 * cell).reshape(rows.shape)
     _foretell(stretches, numbers, entries)
     whole = np.flatnonzero(~lattice.cut.ravel())
+    widest = max(float(np.diff(part[2]).max(initial=0.0)) for along in stretches for part in along)
+    beside = grid.first + 2 * lattice.beside_askew(2 * widest)
+    entries.askew.append(np.concatenate([beside, beside + 1]))
 
     def enter(half: int, centre, places, shares, order: int, out: list) -> None:
         row, column = np.divmod(whole, grid.columns)
@@ -412,37 +425,37 @@ def _foretell(stretches, numbers: np.ndarray, entries: _Entries) -> None:
     for axis, out in enumerate(entries.foretold):
         first = 0
         for _, _, lines in stretches[axis]:
-            mine = np.take(numbers, np.arange(first, first + len(lines)), axis=axis)
-            for line, others, weights in _left_out(lines):
-                to = np.take(mine, [line], axis=axis)
-                told = np.take(mine, others, axis=axis)
-                shares = np.expand_dims(weights, 1 - axis)
-                one, other, share = np.broadcast_arrays(to, told, shares)
-                out.append((one.ravel(), other.ravel(), share.ravel()))
+            mine = np.moveaxis(np.take(numbers, np.arange(first, first + len(lines)), axis=axis), axis, 0)
+            others, weights = _left_out(lines)
+            one, other, share = np.broadcast_arrays(mine[:, :, None], mine[others].swapaxes(1, 2), weights[:, None])
+            out.append((one.ravel(), other.ravel(), share.ravel()))
             first += len(lines)
 
 
-def _left_out(lines: np.ndarray):
-    """For each line the others and the weights that would foretell it; for the outermost, itself."""
-    for k in range(len(lines)):
-        if len(lines) < 5 or k in (0, len(lines) - 1):
-            yield k, np.array([k]), np.ones(1)
-            continue
-        start = min(max(k - 2, 0), len(lines) - 5)
-        others = np.delete(np.arange(start, start + 5), k - start)
-        yield k, others, lagrange(lines[others], lines[k])
+def _left_out(lines: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 4) int and float: for each line the others that would foretell it, by these weights; itself, if outermost."""
+    count = len(lines)
+    others, weights = np.repeat(np.arange(count)[:, None], 4, axis=1), np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+    if count >= 5:
+        inner = np.arange(1, count - 1)
+        start = np.clip(inner - 2, 0, count - 5)
+        around = start[:, None] + np.arange(4)
+        others[inner] = around + (around >= inner[:, None])
+        weights[inner] = lagrange(lines[others[inner]], lines[inner])
+    return others, weights
 
 
-def _lines(count: int, spacing: int = 1) -> np.ndarray:
+def _lines(count: int, widest: float, spacing: int = 1) -> np.ndarray:
     """Places of the lines of nodes along a stretch, in cells: close at its ends, wider and wider towards its middle.
 
-    ``spacing`` cells are looked at as one where they fill the stretch.
+    Spaces are no wider than ``widest`` or a few cells. ``spacing`` cells are looked at as one where they fill the
+    stretch.
     """
     if spacing > 1 and count % spacing == 0:
-        return spacing * _lines(count // spacing)
+        return spacing * _lines(count // spacing, widest / spacing)
     if count == 1:
         return np.array([_BESIDE, 1 - _BESIDE])
-    middle, widest = 0.5 * count, max(_FEWEST_CELLS, count / _SPACES)
+    middle, widest = 0.5 * count, max(_FEWEST_CELLS, min(count / _SPACES, widest))
     half = [_BESIDE]
     while (left := middle - half[-1]) > _HALF * (space := min(widest, _FIRST + _GROWTH * half[-1])):
         # never in the very middle, where other surfaces often lie in line

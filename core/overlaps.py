@@ -22,7 +22,7 @@ _NOTHING = 1e-9
 _CLOSED = 1e-7
 """An opening smaller than this share of the beam is the rounding of edges that meet."""
 
-_SMALL = 0.1
+_SMALL = 0.05
 """Openings smaller than this share of a beam are found again within the beam's arcs."""
 
 _FEW_CORNERS = 4
@@ -351,15 +351,17 @@ class _Regions:
         alone : (n, 3) float
             Moments of every obstacle.
         """
-        group = self.cuts.group[some]
-        begin, end = (np.searchsorted(group, group, side=side) for side in ("left", "right"))
-        order = np.lexsort((-alone[some, 0], group))
-        largest = some[order[begin]]
-        asked = np.flatnonzero((end - begin > _FEW) & (largest != some))
-        pairs = np.stack([some[asked], largest[asked]], axis=1)
-        far, shared = self.farthest(pairs, moments := self.moments(pairs)), moments[:, 0]
         hidden = np.zeros(len(some), bool)
-        hidden[asked] = (far == some[asked]) & (shared >= (1 - _HIDDEN) * alone[some[asked], 0])
+        group = self.cuts.group[some]
+        crowded = np.flatnonzero(np.bincount(group)[group] > _FEW)
+        if not len(crowded):
+            return hidden
+        mine, group = some[crowded], group[crowded]
+        largest = mine[np.lexsort((-alone[mine, 0], group))[np.searchsorted(group, group)]]
+        others = largest != mine
+        pairs = np.stack([mine[others], largest[others]], axis=1)
+        far, shared = self.farthest(pairs, moments := self.moments(pairs)), moments[:, 0]
+        hidden[crowded[others]] = (far == pairs[:, 0]) & (shared >= (1 - _HIDDEN) * alone[pairs[:, 0], 0])
         return hidden
 
     def ordered(self, pairs, moments) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

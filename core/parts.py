@@ -25,7 +25,7 @@ _MOST = 10
 _FEW_RAYS, _MANY_RAYS = 8, 11
 """Order of the lattice of rays: 21 in a beam that shows no sky, 89 in others."""
 
-_MUCH_SKY = 50
+_MUCH_SKY = 12
 """Receivers that see the sky in more whole beams than this don't depend on slits."""
 
 _SLIT = 0.3

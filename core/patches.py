@@ -19,11 +19,11 @@ _WIDEST = 1.0
 _GROWTH = 0.4
 """Growth of patches with the distance from the end of a stretch."""
 
-_FINEST, _NEAR_ENOUGH, _ASKEW = 64, 2e-3, 16
+_FINEST, _NEAR_ENOUGH, _ASKEW = 64, 2e-3, 32
 """Parts of a cell that are told apart at most where a line of contact cuts it; how much farther off than with the best
 number of parts the line may be, in cells; and parts where it runs askew."""
 
-_MOST_PLACES = 400_000
+_MOST_PLACES = 1_000_000
 """Parts of one run's cells that are told apart."""
 
 _WHOLE = 0.9

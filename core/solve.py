@@ -28,8 +28,8 @@ from .transfer import Transfer
 EXACT_OUTLINES = 400
 """Scenes of more outlines gather luminous surfaces and sun patches by the globe, like all other light."""
 
-_OF_SUN_PATCHES = 0.4
-"""How fine the receivers of their light alone are, which comes anew with every hour, over those of all light."""
+_OF_LUMINOUS, _OF_SUN_PATCHES = 2.4, 1.0
+"""How fine the receivers of their light alone are, over those of all light: the Sun's comes anew with every hour."""
 
 _CLOSED = 1e-3
 """Share of bright polygons' light that may escape from what counts as closed."""
@@ -211,7 +211,7 @@ def interreflect(
             found = transfer.on_elements(gather_patches(transfer, emitted, exact))
         else:
             deep_emitted = emitted
-            found = _gather_bright(transfer, emitters, deep_emitted, 1.0, exact, recorder.part(0.1, 0.4))
+            found = _gather_bright(transfer, emitters, deep_emitted, _OF_LUMINOUS, exact, recorder.part(0.1, 0.4))
         components["emitted"], adjusted[0] = brought_home(transfer, found, geometry.of_elements("exitance"))
     sky = components["sky_direct"] + components["sky_specular"]
     smooth = sky + components["emitted"]

@@ -40,7 +40,7 @@ _DAMAGED = (
 )
 """What NumPy and zipfile raise over bytes that they cannot make sense of, and `_array` over what does not fit."""
 
-FORMAT = 4
+FORMAT = 5
 """Raised with every change of what files hold or of how it is found."""
 
 _ARRAYS = (
@@ -65,6 +65,7 @@ def save_transfer(transfer: Transfer, path) -> Path:
         "format": FORMAT,
         "fingerprint": asdict(transfer.fingerprint),
         "bands": transfer.geometry.targets.globe.bands,
+        "beams": transfer.geometry.beams.bands,
         "times": transfer.times,
         "unhidden": transfer.unhidden,
         "sizes": _sizes(transfer.geometry),
@@ -158,9 +159,9 @@ def _sizes(geometry: Geometry) -> list[int]:
 def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content, threads: int) -> Transfer:
     """A transfer from the scene's geometry and the file's arrays, each of which must fit."""
     times = float(header["times"])
-    globe = Globe(int(header["bands"]))
+    globe, beams = (Globe(int(header[name])) for name in ("bands", "beams"))
     planes = find_planes(scene)
-    geometry = make_geometry(scene, planes, globe, options.max_area, times, options.receivers)
+    geometry = make_geometry(scene, planes, globe, options.max_area, times, options.receivers, beams)
     if header["sizes"] != _sizes(geometry):
         raise ValueError("the scene is cut otherwise now")
     lattice = Nodes.of(geometry.fracture, geometry.lattices)
@@ -201,6 +202,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
         lattice.centres,
         lattice.foretold,
         lattice.shared,
+        lattice.askew,
     )
     specular_rows = array("specular_rows", np.int64, None, below=count)
     deep_rows = array("deep_rows", np.int64, None, below=count)

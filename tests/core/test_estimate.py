@@ -114,7 +114,7 @@ def test_faces_lie_within_the_stated_error(shelf):
 
 @pytest.fixture(scope="module")
 def transfers():
-    return {bands: coarse(room(), bands=bands) for bands in (12, 20, 40)}
+    return {bands: coarse(room(), bands=bands) for bands in (12, 20, 100)}  # beams of 12, 20 and 40
 
 
 def test_the_error_falls_with_the_bands(transfers):

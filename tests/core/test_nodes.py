@@ -90,7 +90,7 @@ def test_lattices_are_dense_at_their_borders_and_wide_between():
     assert len(gaps) < 20 and lines[0] == pytest.approx(40 - lines[-1])
     assert 0.05 < lines[0] < 0.3, "light changes fast beside other planes"
     np.testing.assert_allclose(gaps, gaps[::-1])
-    assert gaps[0] < 0.6 and gaps[1] < 1 and gaps.max() >= 3
+    assert gaps[0] < 0.7 and gaps[1] < 1.1 and gaps.max() >= 3
     assert (np.diff(gaps[:5]) > 0.1).all(), "wider and wider"
     assert np.abs(lines - 20).min() > 0.5, "none in the very middle, where other surfaces often lie in line"
     assert len(nodes.points) < 0.12 * len(geometry.fracture.elements)
@@ -273,7 +273,7 @@ def test_even_light_needs_the_lattice_alone():
 
 def test_creases_get_receivers_of_their_own():
     def light(x, z):
-        return 5 + 3 * np.abs(x - 0.93)
+        return 5 + 6 * np.abs(x - 0.93)
 
     geometry, lattice, nodes, values, asked = settle(wall(), light)
     assert len(asked) == 2 and sum(asked) == len(nodes.points) == len(values)
