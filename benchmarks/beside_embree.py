@@ -56,17 +56,17 @@ class Group:
         return len(self.points) * len(self.directions)
 
 
-def groups_of(transfer: luz.Transfer) -> list[Group]:
-    """All receivers of a transfer in the groups in which `prepare` looks."""
+def groups_of(transfer: luz.Transfer, globe: luz.Globe) -> list[Group]:
+    """All receivers of a transfer in groups as large as those in which `prepare` looks, along a globe's parcels."""
     geometry, nodes = transfer.geometry, transfer.nodes
-    most = max(8, form_factors._CHUNK_CELLS // max(geometry.targets.globe.count // 2, 1))
+    most = max(8, form_factors._CHUNK_CELLS // max(globe.count // 2, 1))
     sights: dict[int, GroupSight] = {}
     groups = []
     for chunk in chunks_of_receivers(nodes.points, nodes.sheet, geometry.planes, most):
         sheet, first = int(nodes.sheet[chunk[0]]), chunk[0]
         if sheet not in sights:
             normal = geometry.element_normals[nodes.element[first]]
-            sights[sheet] = sight_of(geometry, transfer.limits, normal, float(normal @ nodes.points[first]))
+            sights[sheet] = sight_of(geometry, transfer.limits, normal, float(normal @ nodes.points[first]), globe)
         groups.append(Group(nodes.points[chunk], sights[sheet]))
     return groups
 
@@ -230,7 +230,7 @@ def agreement_along_rays(transfer: luz.Transfer, rays: list[Rays]) -> float:
 def compare(bands: int, max_area: float, threads: int, repeats: int, most_seconds: float) -> dict:
     """Directions per second of Embree and of the solver in the light-shelf room, in turn."""
     transfer = luz.prepare(rooms.light_shelf_room().scene("S1"), bands=bands, max_area=max_area, threads=threads)
-    groups = groups_of(transfer)
+    groups = groups_of(transfer, transfer.geometry.targets.globe)
     rays = [Rays.of(group) for group in groups]
     works = {
         "nearest surface alone": lambda: look_along_rays(rays, threads),

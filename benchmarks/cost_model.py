@@ -209,7 +209,7 @@ def rates(cells: int) -> dict:
 def measure(bands: int, max_area: float, most_seconds: float) -> dict:
     """Predicted and measured seconds of each step for the light-shelf room, on one thread."""
     transfer = luz.prepare(rooms.light_shelf_room().scene("S1"), bands=bands, max_area=max_area)
-    every = beside_embree.groups_of(transfer)
+    every = beside_embree.groups_of(transfer, transfer.geometry.beams)
     groups, targets = every[::EVERY], transfer.geometry.targets
     for group in groups[:2]:
         gather.gather(group.sight, group.points, targets)  # what is found once belongs to no step

@@ -66,7 +66,8 @@ def stages_text(part: dict) -> list[str]:
             rows.append([name, seconds(row["seconds"]), str(row["runs"]), f"{row['peak_gb']:.2f}"])
     skipped = [f"*{name}*: {why}" for name, why in whole["skipped"].items()]
     return [
-        f"{whole['faces']:,} faces, {whole['receivers']:,} receivers, {whole['parcels']:,} parcels. Memory is the most "
+        f"{whole['faces']:,} faces, {whole['receivers']:,} receivers; {whole['parcels']:,} parcels all round, looked "
+        f"at by {whole['beams']:,} beams. Memory is the most "
         "that the process ever held; from *another hour* on, of a process that loaded the transfer from a file. A "
         "year is 8,760 hours, each with its sky and Sun.",
         "",
@@ -150,7 +151,7 @@ def embree_text(part: dict, engines: dict) -> list[str]:
     else:
         last = ['Embree is not installed: `python -m pip install -e ".[engines]"`.', ""]
     return [
-        f"{part['receivers']:,} receivers × {part['parcels']:,} parcels above their horizon; {part['triangles']} "
+        f"{part['receivers']:,} receivers × all {part['parcels']:,} parcels above their horizon; {part['triangles']} "
         f"triangles; medians of {part['runs']}.",
         "",
         *table("what | million directions | seconds | million a second", rows),

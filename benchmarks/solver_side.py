@@ -101,6 +101,7 @@ def whole_run(bands: int, max_area: float, threads: int, repeats: int, most_seco
         "faces": len(result.areas),
         "receivers": len(prepared.nodes.points),
         "parcels": len(prepared.geometry.targets.globe.directions),
+        "beams": len(prepared.geometry.beams.directions),
         "stages": {name: statistics.median(found) for name, found in stages.items()},
         "skipped": {stage.name: stage.skipped for stage in result.stages if stage.skipped},
     }
