@@ -231,3 +231,16 @@ def test_fine_outlines_are_the_parcels():
     around, off = half.fine_shapes
     weights = ((around.moments - off.moments) * half.cosines).sum(axis=1) / math.pi
     np.testing.assert_allclose(weights, half.weights, rtol=5e-3)
+
+
+@pytest.mark.parametrize("others", [24, 25, 60, 7])
+def test_what_two_globes_have_in_common(others):
+    """Every parcel is shared out wholly, among those that hold the directions in between."""
+    one, other = Globe(24), Globe(others)
+    own, theirs, solid_angle, direction = one.shared_with(other)
+    for globe, parcels in ((one, own), (other, theirs)):
+        sums = np.bincount(parcels, weights=solid_angle, minlength=globe.count)
+        np.testing.assert_allclose(sums, globe.solid_angles, rtol=1e-9)
+        wide = solid_angle > 1e-9
+        np.testing.assert_array_equal(globe.parcel_of(direction[wide]), parcels[wide])
+    assert (np.diff(own) >= 0).all() and one.shared_with(other)[0] is own, "found once"

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from builders import box_polygons
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from layout_samples import BLACK, WHITE, geometry_of, shelf, wall, wall_and
@@ -143,3 +144,26 @@ def test_stretches_fill_a_run_however_close_to_its_end_things_touch(gap, count):
     for place in (gap, count - gap):
         stretches = layout_module._stretches(count, np.array([place]), np.zeros(0), 1)
         assert sum(cells for _, cells in stretches) == count and min(cells for _, cells in stretches) > 0
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.6])
+def test_the_breadth_of_a_corridor_is_its_larger_extent_across(turn):
+    """However it lies; and spaces between receivers along it follow."""
+    rotation = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    scene = luz.Scene()
+    for name, polygon in box_polygons((1.8, 60, 2.6)).items():
+        scene.add(name, np.array(polygon, float) @ rotation.T, WHITE)
+    geometry = geometry_of(scene)
+    assert layout_module.breadth(geometry.planes) == pytest.approx(2.6, rel=1e-9)
+    for lattice in geometry.lattices:
+        np.testing.assert_allclose(lattice.widest * lattice.grid.sides, 1.3, rtol=1e-9)
+
+
+def test_cells_beside_a_line_askew():
+    """From (0.35, 0.15) to (0.95, 0.75): cells within so many cells of it, and none for lines along the axes."""
+    layout = layout_of([[0.35, 0, 0.15], [0.95, 0, 0.75], [0.95, 1, 0.75], [0.35, 1, 0.15]])
+    row, column = np.divmod(layout.beside_askew(1.0), 20)
+    assert len(row) > 10
+    across = np.abs((column + 0.5) - (row + 0.5) - 2) / np.sqrt(2)
+    assert across.max() < 1.0
+    assert not len(layout_of(shelf(0.4)).beside_askew(5.0))
