@@ -219,17 +219,17 @@ def _gather_unhidden(
     run_parallel(work, [members[chunk] for chunk in chunks], threads, report)
 
 
-def _brightness(geometry: Geometry, nodes: Nodes, rows: Rows) -> np.ndarray:
-    """(p,) float: exitance of the patches below an even sky, about, over the sky's; all alike where none is seen."""
-    sky = rows.sky_direct.sum(axis=1, dtype=float)
-    if len(rows.sky_specular):
-        sky += rows.sky_specular.sum(axis=1, dtype=float)
+def _brightness(geometry: Geometry, nodes: Nodes, sky: np.ndarray, form_factors: np.ndarray) -> np.ndarray:
+    """(p,) float: exitance of the patches below an even sky, about, over the sky's; all alike where none is seen.
+
+    ``sky`` (m,) and ``form_factors`` (m, p) of the nodes, to all of the sky and to patches.
+    """
     areas = geometry.fracture.element_areas
     if float(geometry.patch_sums(areas * nodes.on_elements(sky)).sum()) <= _DARK * float(geometry.patch_areas.sum()):
         return np.ones(geometry.targets.patches.count)
     exitance = np.zeros(geometry.targets.patches.count, np.float32)
     for _ in range(_CYCLES):
-        illuminance = nodes.on_elements(sky + rows.form_factors @ exitance)
+        illuminance = nodes.on_elements(sky + form_factors @ exitance)
         means = geometry.patch_sums(areas * illuminance) / geometry.patch_areas
         exitance = (_REFLECTANCE * means).astype(np.float32)
     return exitance + _DARKEST * exitance.mean()
@@ -342,14 +342,14 @@ class Conservation:
         """Compare what patches send out with what nodes receive."""
         area = geometry.fracture.element_areas
         kept = geometry.areas_kept
-        lost = rows.sky_direct.sum(axis=1, dtype=float) + rows.unlit + rows.truncated
+        sky = rows.sky_direct.sum(axis=1, dtype=float)
         if rows.specular_rows.any():
-            lost += rows.sky_specular.sum(axis=1, dtype=float)
-        lost = nodes.weights.apply(lost)
+            sky += rows.sky_specular.sum(axis=1, dtype=float)
+        lost = nodes.weights.apply(sky + rows.unlit + rows.truncated)
         weights = nodes.weights
         share = weights.gathered(kept, len(nodes.points))
         landed, seen = np.zeros(geometry.targets.patches.count), np.zeros(len(share))
-        brightness = _brightness(geometry, nodes, rows)
+        brightness = _brightness(geometry, nodes, sky, rows.form_factors)
         for first in range(0, len(share), _ROWS):
             some = rows.form_factors[first : first + _ROWS].astype(float)
             landed += share[first : first + _ROWS] @ some

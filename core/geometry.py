@@ -16,7 +16,7 @@ from .facets import Facets
 from .fracture import Fracture, fracture
 from .gather import Targets
 from .globe import Globe
-from .layout import Layout, breadth
+from .layout import Layout, breadth_of
 from .outlines import Outlines
 from .patches import make_patches
 from .planes import Planes
@@ -190,8 +190,8 @@ def make_geometry(
     if len(cuts.grids) > MANY_FACETS // 2:  # cells of meshes, too many for lattices of their own
         cuts = replace(cuts, grids=tuple(grid for grid in cuts.grids if grid.rows * grid.columns > 1))
     fronts = len(planes.sheet_surface)
-    across = breadth(planes)
-    lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes, across) for grid in cuts.grids]
+    breadth = breadth_of(planes)
+    lattices = [Layout.of(grid, int(cuts.element_sheet[grid.first]), planes, breadth) for grid in cuts.grids]
     cuts = divided(cuts, lattices, planes)
     points = cuts.elements.mean(axis=1)
     normals = (
@@ -222,7 +222,7 @@ def make_geometry(
         cuts,
         lattices,
         Targets.of(planes, patches, globe),
-        globe if beams is None or facets is not None else beams,
+        globe if beams is None or beams.bands == globe.bands or facets is not None else beams,
         outlines,
         [s.material for s in surfaces],
         wanted,

@@ -57,7 +57,7 @@ class Layout:
     widest: np.ndarray
 
     @classmethod
-    def of(cls, grid: Grid, sheet: int, planes: Planes, breadth: float = np.inf) -> Layout:
+    def of(cls, grid: Grid, sheet: int, planes: Planes, breadth: float) -> Layout:
         """Layout that suits a run, what touches it and what passes close over it, in a scene of some breadth."""
         touched = _touched(grid, sheet, planes)
         passed = _passed(grid, sheet, planes)
@@ -131,7 +131,7 @@ class Layout:
         return sides
 
 
-def breadth(planes: Planes) -> float:
+def breadth_of(planes: Planes) -> float:
     """Middle one of a scene's three extents along its own axes [m]: of a corridor or shaft the larger one across."""
     corners = np.unique(planes.outlines.reshape(-1, 3), axis=0)
     return float(2 * np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(corners.T, bias=True))[1], 0)))

@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from . import layers, polygons
-from .arrays import dots
+from .arrays import dots, runs
 from .hemisphere import Shapes
 from .projection import Beams
 
@@ -85,13 +85,13 @@ class Cuts:
         count, edge = self.window_count, self.window_edge
         if count is not None and edge is not None:
             begin = np.cumsum(count) - count
-            count, edge = count[groups], edge[_ranges(begin[groups], count[groups])]
+            count, edge = count[groups], edge[runs(begin[groups], count[groups])]
         return (
             Cuts(
                 self.beam[mine],
                 number[self.group[mine]],
                 self.count[mine],
-                self.edge[_ranges(first[mine], self.count[mine])],
+                self.edge[runs(first[mine], self.count[mine])],
                 self.height[mine],
                 self.normal[mine],
                 count,
@@ -304,7 +304,7 @@ class _Regions:
         """(m, l) int: lines that bound what obstacles have in common, padded."""
         width = int(counts.max(initial=0))
         index = np.full((len(members), width), self.lines.shape[1] - 1)
-        index[np.arange(width) < counts[:, None]] = _ranges(self.first[members].ravel(), self.count[members].ravel())
+        index[np.arange(width) < counts[:, None]] = runs(self.first[members].ravel(), self.count[members].ravel())
         return index
 
     def extended(self, some, members, last, pairs=None):
@@ -329,7 +329,7 @@ class _Regions:
         begin = members[:, -1] + 1
         more = last[members[:, -1]] - begin
         row = np.repeat(np.arange(len(members)), more)
-        other = _ranges(begin, more)
+        other = runs(begin, more)
         if pairs is not None and len(row):
             key = members[row, -1] * len(some) + other
             place = np.minimum(np.searchsorted(pairs, key), len(pairs) - 1)
@@ -437,9 +437,3 @@ def _along(height, normal, towards) -> np.ndarray:
     with np.errstate(divide="ignore", invalid="ignore"):
         along = height / dots(normal, towards)
     return np.where(along > 0, along, np.inf)
-
-
-def _ranges(begin, count) -> np.ndarray:
-    """Numbers from each begin on, one run after the other."""
-    total = int(count.sum())
-    return np.arange(total) + np.repeat(begin - (np.cumsum(count) - count), count)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arrays import runs
+
 
 @dataclass(frozen=True, eq=False)
 class Weights:
@@ -56,7 +58,7 @@ class Weights:
     def of_rows(self, rows: np.ndarray) -> Weights:
         """Those of some elements ``(k,)``, in their order."""
         count = np.diff(self.start)[rows]
-        entry = np.repeat(self.start[rows] - np.cumsum(count) + count, count) + np.arange(count.sum())
+        entry = runs(self.start[rows], count)
         return Weights(np.concatenate([[0], np.cumsum(count)]), self.node[entry], self.weight[entry])
 
     def turned(self, nodes) -> Weights:

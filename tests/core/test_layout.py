@@ -154,7 +154,7 @@ def test_the_breadth_of_a_corridor_is_its_larger_extent_across(turn):
     for name, polygon in box_polygons((1.8, 60, 2.6)).items():
         scene.add(name, np.array(polygon, float) @ rotation.T, WHITE)
     geometry = geometry_of(scene)
-    assert layout_module.breadth(geometry.planes) == pytest.approx(2.6, rel=1e-9)
+    assert layout_module.breadth_of(geometry.planes) == pytest.approx(2.6, rel=1e-9)
     for lattice in geometry.lattices:
         np.testing.assert_allclose(lattice.widest * lattice.grid.sides, 1.3, rtol=1e-9)
 

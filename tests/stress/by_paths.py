@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from builders import DARK, box_polygons
 from paths import Paths
+from sides import closed_rooms
 from situations import Outcome, Situation, all_of, holds, near, solved
 
 import luzespecular as luz
@@ -157,11 +158,7 @@ def many_panes() -> luz.Scene:
 
 def plates_on_both_sides_of_a_wall(gap: float) -> Outcome:
     """Two small plates of one mesh, in a lit room and in the closed one beside it: that one stays dark."""
-    scene = luz.Scene()
-    for title, x in (("lit", 0.0), ("dark", 3.0 + gap)):
-        for name, polygon in box_polygons((3, 3, 3), (x, 0, 0)).items():
-            glow = 1000.0 if (title, name) == ("lit", "ceiling") else 0.0
-            scene.add(f"{title} {name}", polygon, luz.Material(diffuse_reflectance=0.5, exitance=glow))
+    scene = closed_rooms(3, {"lit": (0, 0, 0), "dark": (3 + gap, 0, 0)})
     plates = [rectangle([x, 1, 1], [0.1, 0, 0], [0, 0.2, 0]) for x in (2.8, 3.1 + gap)]
     scene.add("plates", np.concatenate(plates), GREY, faces=[[0, 1, 2, 3], [4, 5, 6, 7]], two_sided=True)
     result = solved(scene, DARK, bands=24, elements=600, patches=300)

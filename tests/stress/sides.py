@@ -91,13 +91,19 @@ def flipped() -> Outcome:
     return near(both(True)[::-1], both(False), 1e-3)
 
 
+def closed_rooms(size: float, origins: dict[str, tuple], reflectance: float = 0.5) -> luz.Scene:
+    """Closed cubes by title and origin; the ceiling of the "lit" one glows."""
+    scene = luz.Scene()
+    for title, origin in origins.items():
+        for name, polygon in box_polygons((size, size, size), origin).items():
+            glow = 1000.0 if (title, name) == ("lit", "ceiling") else 0.0
+            scene.add(f"{title} {name}", polygon, luz.Material(diffuse_reflectance=reflectance, exitance=glow))
+    return scene
+
+
 def shared_wall(gap: float) -> Outcome:
     """Two closed rooms with one wall between, given from both sides: where no lamp is, it is dark."""
-    scene = luz.Scene()
-    for title, x in (("lit", 0.0), ("dark", 2.0 + gap)):
-        for name, polygon in box_polygons((2, 2, 2), (x, 0, 0)).items():
-            glow = 1000.0 if (title, name) == ("lit", "ceiling") else 0.0
-            scene.add(f"{title} {name}", polygon, luz.Material(diffuse_reflectance=0.5, exitance=glow))
+    scene = closed_rooms(2, {"lit": (0, 0, 0), "dark": (2 + gap, 0, 0)})
     result = solved(scene, DARK, bands=24, elements=600, patches=300)
     dark = np.concatenate([result.illuminance[result.faces_of(f"dark {n}")] for n in box_polygons()])
     return near(dark, np.zeros(len(dark)), 0, 1e-9 * result.mean("lit floor"))
@@ -105,12 +111,8 @@ def shared_wall(gap: float) -> Outcome:
 
 def rooms_around_a_lit_one() -> Outcome:
     """Six closed rooms around a lit one, wall to wall: all are dark."""
-    scene = luz.Scene()
     origins = [(0, 0, 0), (2, 0, 0), (-2, 0, 0), (0, 2, 0), (0, -2, 0), (0, 0, 2), (0, 0, -2)]
-    for title, origin in zip(["lit", *"abcdef"], origins, strict=True):
-        for name, polygon in box_polygons((2, 2, 2), origin).items():
-            glow = 1000.0 if (title, name) == ("lit", "ceiling") else 0.0
-            scene.add(f"{title} {name}", polygon, luz.Material(diffuse_reflectance=0.6, exitance=glow))
+    scene = closed_rooms(2, dict(zip(["lit", *"abcdef"], origins, strict=True)), 0.6)
     result = solved(scene, DARK, bands=24, elements=1500, patches=500)
     worst = max(result.illuminance[result.faces_of(f"{t} {n}")].max() for t in "abcdef" for n in box_polygons())
     return near(worst, 0.0, 0, 1e-9 * result.mean("lit floor"))
