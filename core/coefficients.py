@@ -19,7 +19,6 @@ from .geometry import sight_of
 from .parallel import run_parallel
 from .radiosity import all_settled
 from .result import coplanar
-from .solve import patch_means as means_over_patches
 from .solve import patch_properties
 from .sunlight import light_points, trace_sun
 from .transfer import Transfer
@@ -164,7 +163,7 @@ def find_coefficients(
     def follow(one: int, checkpoint: Callable[[], None]) -> None:
         sunlight = trace_sun(geometry.outlines, suns[one], 1.0, transfer.limits.cutoff, checkpoint)
         direct, by_mirrors = sunlight.on_elements(geometry.triangles, geometry.planes.outline_sheet)
-        on_patches[one] = means_over_patches(geometry, direct + by_mirrors)
+        on_patches[one] = geometry.patch_means(direct + by_mirrors)
         lumens[one] = stays.elements @ (direct + by_mirrors)
         if places is None:
             by_sun[:, one] = [

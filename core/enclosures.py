@@ -61,7 +61,7 @@ class Enclosures:
         first : (e,) int
             A node of each element.
         """
-        of_patches = enclosed(areas[:, None].astype(factors.dtype) * factors)
+        of_patches = enclosed(factors, areas)
         count = int(of_patches.max(initial=0)) + 1
         of_nodes = np.zeros(len(form_factors), np.int64)
         if count > 1:
@@ -77,7 +77,7 @@ class Enclosures:
         return np.bincount(of, weights=values, minlength=self.count)
 
 
-def enclosed(flux: np.ndarray) -> np.ndarray:
+def enclosed(factors: np.ndarray, areas: np.ndarray) -> np.ndarray:
     """(p,) int: numbers of the parts that patches belong to.
 
     From single patches on, each part that exchanges more than `APART` of its light with others joins the one that it
@@ -85,36 +85,41 @@ def enclosed(flux: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    flux : (p, p) float
-        What each patch gives each other, in any measure of light. Its diagonal is other for a while.
+    factors : (p, p) float
+        What each patch gives each other, over its area. The diagonal is another one for a while.
+    areas : (p,) float
+        Of the patches, in any measure.
     """
-    of = np.arange(len(flux))
-    used = np.ones(len(flux), bool)
-    while len(flux) > 1:
-        own = flux.diagonal().copy()
-        sent, got = flux.sum(axis=1, dtype=float), flux.sum(axis=0, dtype=float)
-        if len(of) == len(flux):
+    of = np.arange(len(factors))
+    used = np.ones(len(factors), bool)
+    areas = areas.astype(factors.dtype)
+    while len(factors) > 1:
+        diagonal = factors.diagonal().copy()
+        own, got = areas * diagonal, areas @ factors
+        sent = areas * (factors @ np.ones(len(factors), factors.dtype))
+        if len(of) == len(factors):
             used = (sent > 0) | (got > 0)
-        np.fill_diagonal(flux, -1.0)
-        partner = flux.argmax(axis=1)
+        np.fill_diagonal(factors, -1.0)
+        partner = factors.argmax(axis=1)
         blind = np.flatnonzero(sent <= own)
-        partner[blind] = flux[:, blind].argmax(axis=0)
-        np.fill_diagonal(flux, own)
+        partner[blind] = (areas[:, None] * factors[:, blind]).argmax(axis=0)
+        np.fill_diagonal(factors, diagonal)
         closed = sent + got - 2 * own <= APART * (sent + got)
-        joined = _joined(np.where(closed, np.arange(len(flux)), partner))
-        if int(joined.max()) + 1 == len(flux):
+        joined = _joined(np.where(closed, np.arange(len(factors)), partner))
+        if int(joined.max()) + 1 == len(factors):
             break
-        of, flux = joined[of], _contracted(flux, joined)
+        of, factors = joined[of], _contracted(factors, areas, joined)
+        areas = np.ones(len(factors), factors.dtype)
     numbers = np.zeros(len(of), np.int64)
     numbers[used] = np.unique(of[used], return_inverse=True)[1].reshape(-1)
     return numbers
 
 
-def _contracted(flux: np.ndarray, joined: np.ndarray) -> np.ndarray:
-    """Flux between parts, of what flows between their members."""
+def _contracted(factors: np.ndarray, areas: np.ndarray, joined: np.ndarray) -> np.ndarray:
+    """What parts give each other, of what their members do."""
     order = np.argsort(joined, kind="stable")
     starts = np.flatnonzero(np.diff(joined[order], prepend=-1))
-    rows = np.stack([flux[some].sum(axis=0) for some in np.split(order, starts[1:])])
+    rows = np.stack([areas[some] @ factors[some] for some in np.split(order, starts[1:])])
     return np.add.reduceat(rows[:, order], starts, axis=1)
 
 

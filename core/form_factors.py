@@ -230,8 +230,7 @@ def _brightness(geometry: Geometry, nodes: Nodes, sky: np.ndarray, form_factors:
     exitance = np.zeros(geometry.targets.patches.count, np.float32)
     for _ in range(_CYCLES):
         illuminance = nodes.on_elements(sky + form_factors @ exitance)
-        means = geometry.patch_sums(areas * illuminance) / geometry.patch_areas
-        exitance = (_REFLECTANCE * means).astype(np.float32)
+        exitance = (_REFLECTANCE * geometry.patch_means(illuminance)).astype(np.float32)
     return exitance + _DARKEST * exitance.mean()
 
 
@@ -268,7 +267,9 @@ class Light:
         some = slice(members[0], members[-1] + 1) if len(members) else slice(0, 0)
         sky = rows.sky_direct[some] @ sides
         mirrored = np.flatnonzero(rows.specular_rows[some])
-        sky[mirrored] += rows.sky_specular[some][mirrored] @ sides
+        for first in range(0, len(mirrored), _ROWS):  # few at once: copies of them stay in cache
+            few = mirrored[first : first + _ROWS]
+            sky[few] += rows.sky_specular[some].take(few, axis=0) @ sides
         return cls(sky.astype(float), (rows.form_factors[some] @ groups).astype(float))
 
     def followed(self, other: Light) -> Light:
@@ -342,9 +343,10 @@ class Conservation:
         """Compare what patches send out with what nodes receive."""
         area = geometry.fracture.element_areas
         kept = geometry.areas_kept
-        sky = rows.sky_direct.sum(axis=1, dtype=float)
+        every = np.ones(rows.sky_direct.shape[1])
+        sky = product(rows.sky_direct, every)
         if rows.specular_rows.any():
-            sky += rows.sky_specular.sum(axis=1, dtype=float)
+            sky += product(rows.sky_specular, every)
         lost = nodes.weights.apply(sky + rows.unlit + rows.truncated)
         weights = nodes.weights
         share = weights.gathered(kept, len(nodes.points))

@@ -133,6 +133,10 @@ class Geometry:
         """(p,) float: sums over each patch's elements of values ``(e,)``."""
         return self.targets.patches.sums(values)
 
+    def patch_means(self, values: np.ndarray) -> np.ndarray:
+        """(p,) float: means over each patch's area of elements' values ``(e,)``."""
+        return self.patch_sums(self.fracture.element_areas * values) / self.patch_areas
+
     @cached_property
     def patch_areas(self) -> np.ndarray:
         """(p,) float [m²]."""

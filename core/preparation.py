@@ -278,7 +278,7 @@ def _prepared(
         if keep_apart(geometry, nodes, enclosures, gathered.form_factors):
             patch_factors = patch_means(geometry, nodes, gathered.form_factors)
         conservation = Conservation.of(geometry, nodes, gathered, enclosures)
-        spread = patch_means(geometry, nodes, conservation.spread[:, None])[:, 0]
+        spread = geometry.patch_means(nodes.weights.apply(conservation.spread))
         exchange = Exchange(
             patch_factors.astype(np.float32, copy=False), spread, conservation.missing, enclosures.of_patches
         )

@@ -88,7 +88,7 @@ class Field:
 
         sent = {"emitted": (on_cells(self.patch_emitted), on_cells(self.deep_emitted))}
         if not initial:
-            mean = geometry.from_patches(patch_means(geometry, self.by_patches))
+            mean = geometry.from_patches(geometry.patch_means(self.by_patches))
             uneven = np.divide(self.by_patches, mean, out=np.ones_like(mean), where=mean > 0)
             sent["interreflected"] = (on_cells(self.patch_exitance, uneven), on_cells(self.deep_reflected))
         return sent
@@ -223,10 +223,10 @@ def interreflect(
         return Field(components, none, by_globe, emitters, len(emitters), deep_emitted, none, dark, out)
     first = np.zeros(len(sun))
     if sunny:
-        deep_reflected = reflectance * patch_means(geometry, sun - sunlight.blur)
+        deep_reflected = reflectance * geometry.patch_means(sun - sunlight.blur)
         first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, exact, recorder.part(0.4, 0.8))
         first, adjusted[1] = brought_home(transfer, first, share * (sun - sunlight.blur))
-    smooth, once = patch_means(geometry, smooth), patch_means(geometry, first)
+    smooth, once = geometry.patch_means(smooth), geometry.patch_means(first)
 
     def checkpoint() -> None:
         recorder.report(0.8, "interreflection")
@@ -444,11 +444,6 @@ def estimate_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field:
     facets = trial.facets
     more = np.pi * product(facets.sky, sky_column(facets.targets, light)) + product(facets.cells, exitance)
     return relative * (total - exact) + LEAST * total + spread_of_facets(facets, geometry.element_surface, more)
-
-
-def patch_means(geometry: Geometry, values: np.ndarray) -> np.ndarray:
-    """(p,) float: area-weighted means over each patch's elements of values ``(e,)``."""
-    return geometry.patch_sums(geometry.fracture.element_areas * values) / geometry.patch_areas
 
 
 def _check_options(light, tolerance, cycles) -> None:

@@ -15,14 +15,14 @@ def test_parts_that_hardly_exchange_light():
     flux = np.zeros((9, 9))
     flux[:3, :3] = flux[3:6, 3:6] = 1.0
     flux[7, 8] = 1e-9  # little, but all that these have
-    assert len(np.unique(enclosed(flux)[[0, 3, 7]])) == 3
+    assert len(np.unique(enclosed(flux, np.ones(len(flux)))[[0, 3, 7]])) == 3
     for group in ([0, 1, 2], [3, 4, 5], [7, 8]):
-        assert len(np.unique(enclosed(flux)[group])) == 1
-    assert enclosed(flux)[6] == 0, "it sees nothing"
+        assert len(np.unique(enclosed(flux, np.ones(len(flux)))[group])) == 1
+    assert enclosed(flux, np.ones(len(flux)))[6] == 0, "it sees nothing"
     flux[0, 5] = 30 * APART
-    assert (enclosed(flux)[:6] == 0).all()
+    assert (enclosed(flux, np.ones(len(flux)))[:6] == 0).all()
     flux[0, 5] = 0.1 * APART
-    assert len(np.unique(enclosed(flux)[:6])) == 2
+    assert len(np.unique(enclosed(flux, np.ones(len(flux)))[:6])) == 2
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -31,8 +31,8 @@ def test_a_chain_of_rooms_is_one(seed):
     order = np.random.default_rng(seed).permutation(40)
     flux = np.zeros((40, 40))
     flux[order[:-1], order[1:]] = np.random.default_rng(seed).random(39) + 0.1
-    assert (enclosed(flux) == 0).all()
-    assert len(enclosed(np.zeros((0, 0)))) == 0
+    assert (enclosed(flux, np.ones(len(flux))) == 0).all()
+    assert len(enclosed(np.zeros((0, 0)), np.zeros(0))) == 0
 
 
 def rooms(exitance, dim, apart=1.5, door=False):
