@@ -109,13 +109,11 @@ class Bundle:
         used, place = np.unique(self.outline, return_inverse=True)
         tests = _Tests(self.scene, self.points, used)
         bounds = np.searchsorted(self.way, np.arange(shape[0] + 1))
-        first, most_pairs = 0, max(1, _BLOCK // max(shape[1], 1))
+        first, most_pairs, begun = 0, max(1, _BLOCK // max(shape[1], 1)), bool(start.any())
         while first < shape[0]:
             last = max(first + 1, int(np.searchsorted(bounds, bounds[first] + most_pairs, side="right")) - 1)
-            some, pairs = slice(first, last), slice(bounds[first], bounds[last])
-            tests.first(
-                self.directions, self.way[pairs], place[pairs], least, most, start.any(), outline, distance
-            )
+            pairs = slice(bounds[first], bounds[last])
+            tests.first(self.directions, self.way[pairs], place[pairs], least, most, begun, outline, distance)
             first = last
         return outline[way, row], distance[way, row]
 
@@ -130,8 +128,8 @@ def _cones(scene: RayScene, points: np.ndarray, outlines: np.ndarray) -> tuple[n
     around = float(np.linalg.norm(points - centre, axis=1).max()) + scene.tolerance
     axes = middle[outlines] - centre
     length = np.maximum(np.linalg.norm(axes, axis=1), 1e-300)
-    sine = (radius[outlines] + around) / length
-    cosines = np.where(sine < 1, np.sqrt(np.maximum(1 - sine**2, 0.0)) - _SLACK, -2.0)
+    sine = np.minimum((radius[outlines] + around) / length, 1.0)
+    cosines = np.where(sine < 1, np.sqrt(1 - sine**2) - _SLACK, -2.0)
     return (axes / length[:, None]).astype(np.float32), cosines.astype(np.float32)
 
 

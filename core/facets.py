@@ -77,7 +77,7 @@ class Facets:
         many = int(np.count_nonzero(areas >= _LARGE * 2 * (x * y + y * z + z * x)))
         order = np.argsort(-areas, kind="stable")
         stand_out = int(np.count_nonzero(areas >= _STANDS_OUT * np.median(areas)))
-        count = min(max(many, min(stand_out, _FEWEST_LARGE), 1), _MOST_LARGE)
+        count = min(max(many, min(stand_out, _FEWEST_LARGE)), _MOST_LARGE)
         large, small = np.sort(order[:count]), np.sort(order[count:])
         times = next(times for most, times in _FINENESS if most is None or len(small) <= most)
         bands = min(globe.bands, max(_LEAST_BANDS, globe.bands // times))

@@ -82,4 +82,3 @@ def test_few_rays_go_down_the_tree_between_meshes(monkeypatch):
     parcels = transfer.geometry.beams.count // 2
     assert transfer.geometry.outlines.facets is not None
     assert rays < 0.1 * len(transfer.nodes.points) * parcels
-
