@@ -13,6 +13,7 @@ import numpy as np
 
 from . import polygons, rims
 from .arrays import dots
+from .bundles import Bundle
 from .globe import Globe
 from .projection import UNTURNED, Beams, HalfSpace
 from .rays import RayScene
@@ -34,9 +35,6 @@ _FINENESS = ((3_000, 1), (20_000, 2), (None, 3))
 """Up to so many facets, parcels of the rays' globe are as wide as so many of the scene's."""
 
 _LEAST_BANDS = 20
-
-_FEW_ROWS = 4
-"""Fewer receivers go down the tree at once: what they cannot meet is found out there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +77,7 @@ class Facets:
         many = int(np.count_nonzero(areas >= _LARGE * 2 * (x * y + y * z + z * x)))
         order = np.argsort(-areas, kind="stable")
         stand_out = int(np.count_nonzero(areas >= _STANDS_OUT * np.median(areas)))
-        count = min(max(many, min(stand_out, _FEWEST_LARGE), 1), _MOST_LARGE)
+        count = min(max(many, min(stand_out, _FEWEST_LARGE)), _MOST_LARGE)
         large, small = np.sort(order[:count]), np.sort(order[count:])
         times = next(times for most, times in _FINENESS if most is None or len(small) <= most)
         bands = min(globe.bands, max(_LEAST_BANDS, globe.bands // times))
@@ -202,21 +200,21 @@ def _before_sky(facets: Facets, among: Tree, unseen_backs, points, beams: Beams,
 def _before_whole(facets: Facets, among: Tree, tiles: _Tiles, points, beams: Beams, weights, whole, view: View, past):
     """Which of the beams ``(r, k)`` that see one thing see a facet before it, which are near to such; and these."""
     sent = np.logical_or.reduceat(whole.take(tiles.order, axis=1), tiles.starts, axis=1)
-    if len(points) >= _FEW_ROWS:
-        sent &= among.may_meet(points, tiles.directions)
+    bundle = Bundle.of(facets.rays, points, tiles.directions, among, sent.size)
+    sent &= bundle.may_meet()
     row, tile = np.nonzero(sent)
     directions = tiles.directions[tile]
     away = _start(past, points[row], directions)
     origins = points[row] + away[:, None] * directions
     middle, limit = (each[row, tiles.middle[tile]] for each in (view.seen, view.nearest))
-    limit = limit - away
     divided = np.flatnonzero(middle == SHARED)
-    limit[divided] = facets.large_rays.nearest(origins[divided], directions[divided])[1]
-    outline, distance = facets.rays.nearest(origins, directions, limit, among)
+    limit = limit.astype(float)
+    limit[divided] = away[divided] + facets.large_rays.nearest(origins[divided], directions[divided])[1]
+    outline, distance = bundle.nearest(row, tile, away, limit)
     mine = np.flatnonzero(outline >= 0)
     row, tile, distance = row[mine], tile[mine], distance[mine]
     hit = np.full(sent.shape, np.inf, np.float32)
-    hit[row, tile] = distance + away[mine]
+    hit[row, tile] = distance
     # what is behind the facet in the tile's middle, is behind it in all of the tile
     behind = np.full(sent.shape, SHARED)
     behind[row, tile] = middle[mine]
@@ -241,7 +239,14 @@ def _before_whole(facets: Facets, among: Tree, tiles: _Tiles, points, beams: Bea
     return (
         hidden,
         beside,
-        Found(row[shows], facets.small[outline[mine]], origins[mine], directions[mine], distance[shows], weight[shows]),
+        Found(
+            row[shows],
+            facets.small[outline[mine]],
+            origins[mine],
+            directions[mine],
+            distance[shows] - away[mine],
+            weight[shows],
+        ),
     )
 
 

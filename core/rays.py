@@ -73,7 +73,7 @@ class RayScene:
     tolerance: float
 
     @cached_property
-    def _edges(self) -> list[tuple[np.ndarray, np.ndarray]]:
+    def edges(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """For each corner, normals ``(o, 3)`` of the edges after it, inward, and what points inside are above ``(o,)``.
 
         One after the other, as there may be a million.
@@ -87,6 +87,16 @@ class RayScene:
             inward /= np.where(real, length, 1.0)[:, None]
             found.append((inward, np.where(real, dots(inward, corner) - 1e-3 * self.tolerance, -np.inf)))
         return found
+
+    @cached_property
+    def spheres(self) -> tuple[np.ndarray, np.ndarray]:
+        """Middles ``(o, 3)`` and radii ``(o,)`` of spheres around the outlines."""
+        low, high = self.vertices.min(axis=1), self.vertices.max(axis=1)
+        middle = 0.5 * (low + high)
+        radius = np.zeros(len(middle))
+        for k in range(self.vertices.shape[1]):
+            np.maximum(radius, np.linalg.norm(self.vertices[:, k] - middle, axis=1), out=radius)
+        return middle, radius
 
     @cached_property
     def _tree(self) -> Tree:
@@ -233,7 +243,7 @@ class RayScene:
         """(n,) bool: whether rays that meet an outline's plane meet the outline."""
         places = (points + distance * directions).T
         inside = np.ones(len(outline), bool)
-        for inward, start in self._edges:
+        for inward, start in self.edges:
             inside &= dots(inward.take(outline, axis=0), places) >= start.take(outline)
         return inside
 
@@ -252,7 +262,7 @@ class RayScene:
         (n, 3) float
         """
         moved = np.array(places, float)
-        edges = [(inward[outline], start[outline]) for inward, start in self._edges]
+        edges = [(inward[outline], start[outline]) for inward, start in self.edges]
         for _ in range(2):  # pushing in at one edge may push out at the next
             for across, least in edges:
                 moved += np.maximum(least + margin - onto(moved, across), 0.0)[:, None] * across
@@ -267,7 +277,7 @@ class RayScene:
         near = np.flatnonzero((along > 0) & (np.abs(height) > self.tolerance) & (along < distance.take(ray)))
         ray, candidate, along = ray.take(near), candidate.take(near), along.take(near)
         place = place.take(near, axis=0) + along[:, None] * way.take(near, axis=0)
-        for inward, start in self._edges:
+        for inward, start in self.edges:
             inside = np.flatnonzero(dots(inward.take(candidate, axis=0), place) >= start.take(candidate))
             ray, candidate, along = ray.take(inside), candidate.take(inside), along.take(inside)
             place = place.take(inside, axis=0)

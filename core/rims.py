@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import dots
+from .bundles import Bundle
 from .globe import Globe
 from .hemisphere import direction_of
 from .projection import Beams
@@ -97,8 +98,10 @@ def sampled(
     left_towards : (n, 3) float
         The middle of that.
     """
-    directions = beams.rays(beam, _RAYS[min(wider, len(_RAYS)) - 1]).astype(float)
-    directions /= np.linalg.norm(directions, axis=2, keepdims=True)
+    some, place = np.unique(beam, return_inverse=True)
+    rays_of = beams.rays(some, _RAYS[min(wider, len(_RAYS)) - 1]).astype(float)
+    rays_of /= np.linalg.norm(rays_of, axis=2, keepdims=True)
+    directions = rays_of[place]
     weight = np.maximum(directions @ beams.hemisphere.normal, 0.0)
     shape = weight.shape
     origins = np.broadcast_to(points[row][:, None], directions.shape).reshape(-1, 3)
@@ -108,7 +111,11 @@ def sampled(
         weight[((outline >= 0) & ~unseen).reshape(shape)] = 0.0
     total = weight.sum(axis=1, keepdims=True)
     weight = np.divide(weight, total, out=weight, where=total > 0)
-    outline, distance = rays.nearest(origins, directions.reshape(-1, 3), among=among)
+    of_ray = (place[:, None] * shape[1] + np.arange(shape[1])).ravel()
+    bundle = Bundle.of(rays, points, rays_of.reshape(-1, 3), among, len(of_ray))
+    outline, distance = bundle.nearest(
+        np.repeat(row, shape[1]), of_ray, np.zeros(len(of_ray)), np.full(len(of_ray), np.inf)
+    )
     met = (outline >= 0) & (weight.ravel() > 0)
     free = np.where(met.reshape(shape), 0.0, weight)
     left = np.where(total[:, 0] > 0, free.sum(axis=1), np.nan)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -81,6 +82,13 @@ class Tree:
     def is_empty(self) -> bool:
         """Whether it holds nothing."""
         return bool(self.boxes[0][0, 0, 0] > self.boxes[0][0, 1, 0])
+
+    @cached_property
+    def held(self) -> np.ndarray:
+        """(n,) int: outlines in its boxes."""
+        boxes = self.boxes[-1]
+        candidate = self.order.reshape(-1, LEAF)[boxes[:, 0, 0] <= boxes[:, 1, 0]].ravel()
+        return candidate[candidate >= 0]
 
     def may_meet(self, points, directions) -> np.ndarray:
         """(r, k) bool: whether beams of directions ``(k, 3)`` from points ``(r, 3)`` meet a box of a coarse level."""

@@ -99,3 +99,15 @@ def test_a_pruned_tree_finds_what_stands_above(seed):
     assert rays.above([up], [10.0]).is_empty
     near, _ = rays.nearest(points, directions, within=0.5 * far)
     assert (near == -1).all()
+
+
+def test_of_a_mesh_of_even_facets_none_is_projected():
+    """Beside one that is, rays to what it leaves of a parcel would pass through its place: a closed ball would leak."""
+    corners = np.array([surface.pieces[0][:3] for surface in ball(2).surfaces.values()]).reshape(-1, 3)
+    scene = luz.Scene()
+    scene.add("ball", corners, GREY, faces=np.arange(960).reshape(-1, 3))
+    scene.add("leaf", [[0, 0, 0], [0.3, 0, 0], [0, 0.3, 0.1]], GREY, two_sided=True)
+    transfer = prepare_coarse(scene, bands=8)
+    assert not len(transfer.geometry.outlines.facets.large)
+    assert not transfer.sky_direct.any()
+    np.testing.assert_allclose(transfer.form_factors.sum(axis=1), 1.0, atol=1e-5)

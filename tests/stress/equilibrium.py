@@ -203,6 +203,9 @@ def situations() -> Iterator[Situation]:
     yield row("a luminous mirror ball in a room", lambda: even(_ball_in_a_room(warm(0, 0.6)), DARK, within))
     finer = _ball_in_a_room(warm(0, 0.6), True)
     yield row("a luminous ball of 320 mirrors in a room", lambda: even(finer, DARK, within), True)
+    between = 1.3 * inside / np.linalg.norm(inside, axis=1, keepdims=True)
+    yield row("a ball of 320 in another", lambda: even(_ball_in_a_ball(), DARK, between, max_area=None), True)
+    yield row("a ball of 320 in another with a hole", lambda: even(_ball_in_a_ball(True), AROUND, between), True)
 
 
 def _facing(pane: luz.Material) -> luz.Scene:
@@ -211,14 +214,29 @@ def _facing(pane: luz.Material) -> luz.Scene:
     return scene
 
 
+def _in_four(facets: np.ndarray) -> np.ndarray:
+    """Facets of a ball ``(f, 3, 3)``, each cut in four and pushed out."""
+    middles = 0.5 * (facets + np.roll(facets, -1, axis=1))
+    before = np.roll(middles, 1, axis=1)
+    parts = np.concatenate([middles, *np.stack([facets, middles, before], axis=2).swapaxes(0, 1)])
+    return parts / np.linalg.norm(parts, axis=2, keepdims=True)
+
+
+def _ball_in_a_ball(hole: bool = False) -> luz.Scene:
+    """Of 320 facets each, the outer one seen from inside; a hole in its top lets the field in."""
+    facets = _in_four(ball(warm(), False).surfaces["ball"].pieces)
+    outer = 2 * facets[facets[:, :, 2].mean(axis=1) < 0.85, ::-1] if hole else 2 * facets[:, ::-1]
+    scene = luz.Scene()
+    for name, corners, material in (("outer", outer, warm(0.5)), ("inner", facets, warm(0.7))):
+        scene.add(name, corners.reshape(-1, 3), material, faces=np.arange(3 * len(corners)).reshape(-1, 3))
+    return scene
+
+
 def _ball_in_a_room(material: luz.Material, finer: bool = False) -> luz.Scene:
     scene = closed(warm(0.6))
     facets = ball(warm(), False).surfaces["ball"].pieces
     if finer:
-        middles = 0.5 * (facets + np.roll(facets, -1, axis=1))
-        before = np.roll(middles, 1, axis=1)
-        facets = np.concatenate([middles, *np.stack([facets, middles, before], axis=2).swapaxes(0, 1)])
-        facets /= np.linalg.norm(facets, axis=2, keepdims=True)
+        facets = _in_four(facets)
     corners = 0.4 * facets.reshape(-1, 3) + [1.5, 1, 0.9]
     scene.add("ball", corners, material, faces=np.arange(len(corners)).reshape(-1, 3))
     return scene
