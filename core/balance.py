@@ -66,6 +66,7 @@ def lumen_balance(result: Result) -> Balance:
     escaped, unlit, lost = (
         float(flux @ transfer.on_elements(share)) for share in (open_share, transfer.unlit, transfer.truncated)
     )
+    escaped += result.field.beside
     absorbed = np.bincount(surface, weights=area * illuminance * absorptance, minlength=len(geometry.surface_materials))
     # light from outside that is cut with its chain never lands, so it is no part of entering
     truncated = lost

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -236,12 +237,46 @@ def _parts_of_beams(s: Sighting, parts: np.ndarray, targets: Targets, unlit: np.
         distance = height / dots(towards, s.obstacles.normals.take(obstacle, axis=0))
     distance = np.nan_to_num(distance, posinf=1e30, neginf=-1e30)
     points = s.points.take(row, axis=0) + distance[:, None] * towards
-    cells, axes = [], targets.planes.sheet_axes.take(sheet, axis=0)
-    for k in (0, 1):
-        place = dots(axes[:, k], points) - grid.grid_origin[side, k]
-        place = place * grid.grid_scale[side, k] + _BESIDE_BORDERS
-        cells.append(np.clip(place, 0, grid.grid_shape[side, k] - 0.5).astype(np.int64))
-    return row, grid.grid[base + cells[0] * grid.grid_shape[side, 1] + cells[1]], weight
+    axes = targets.planes.sheet_axes.take(sheet, axis=0)
+    place = np.stack([dots(axes[:, k], points) for k in (0, 1)], axis=1) - grid.grid_origin[side]
+    place = place * grid.grid_scale[side] + _BESIDE_BORDERS
+    strips = np.flatnonzero(grid.narrow[side] >= 0)
+    if len(strips) and not s.rays:
+        normals = s.obstacles.normals.take(obstacle[strips], axis=0)
+        reach = _reach(s, targets, side[strips], place[strips], towards[strips], normals, np.abs(distance[strips]))
+        every, place = _in_thirds(place, strips, grid.narrow[side[strips]], reach)
+        weight = weight[every] * np.where(grid.narrow[side[every]] >= 0, 1 / 3, 1.0)
+        row, base, side = row[every], base[every], side[every]
+    cell = np.clip(place, 0, grid.grid_shape[side] - 0.5).astype(np.int64)
+    return row, grid.grid[base + cell[:, 0] * grid.grid_shape[side, 1] + cell[:, 1]], weight
+
+
+def _reach(s: Sighting, targets: Targets, side, place, towards, normals, distance) -> np.ndarray:
+    """(n,) float: how far to either side of places ``(n, 2)`` parts of beams reach across narrow strips, in cells.
+
+    What hides a strip in part mostly leaves one of its borders in sight: from its middle a part reaches as far as that,
+    or as its beam is wide.
+    """
+    grid, every = targets.patches, np.arange(len(side))
+    axis = grid.narrow[side]
+    middle = place[every, axis]
+    across = targets.planes.sheet_axes[side % len(targets.planes.sheet_surface), axis]
+    slant = dots(across, towards) / np.maximum(np.abs(dots(normals, towards)), 1e-9)
+    half = 0.5 * np.pi / s.beams.hemisphere.globe.bands * distance * np.sqrt(1 + slant**2)
+    reach = np.minimum(half * grid.grid_scale[side, axis], np.minimum(middle, grid.grid_shape[side, axis] - middle))
+    return np.maximum(reach, 0.0)
+
+
+def _in_thirds(place, some, axis, reach) -> tuple[np.ndarray, np.ndarray]:
+    """Which of places ``(n, 2)`` each is, and places, where ``some`` (k,) count in three along an axis.
+
+    Chebyshev's rule: what runs as a parabola has its mean over the reach in either direction at these three.
+    """
+    every = np.concatenate([np.arange(len(place)), some, some])
+    found = place[every]
+    step = math.sqrt(0.5) * reach
+    found[np.arange(len(place), len(every)), np.tile(axis, 2)] += np.concatenate([step, -step])
+    return every, found
 
 
 def _add_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:

@@ -150,7 +150,7 @@ class Geometry:
         cells = make_patches(
             self.planes, cuts.elements, cuts.element_sheet, whole, cuts.element_areas, count, self.lattices
         )
-        return replace(self.targets, patches=cells)
+        return replace(self.targets, patches=replace(cells, narrow=self.targets.patches.narrow))
 
     def cell_means(self, values: np.ndarray) -> np.ndarray:
         """(c,) float: area-weighted means over `cells` of values ``(e,)``."""

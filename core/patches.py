@@ -64,6 +64,8 @@ class Patches:
         Where the sheet's cells begin in ``grid``; -1 for a sheet without patches.
     grid : (cells,) int
         Column of each cell: its patch, or a part of one across a narrow strip.
+    narrow : (2s,) int
+        Axis that runs across a sheet which is such a strip; -1 for others.
     profiles : tuple of Profile
         What the columns after the patches are parts of.
     """
@@ -75,6 +77,7 @@ class Patches:
     grid_shape: np.ndarray
     grid_base: np.ndarray
     grid: np.ndarray
+    narrow: np.ndarray
     profiles: tuple[Profile, ...] = ()
 
     @property
@@ -145,9 +148,10 @@ def make_patches(
     of_element = np.full(len(centroids), -1, np.int64)
     origin, scale = np.zeros((sheets, 2)), np.zeros((sheets, 2))
     shape, base = np.ones((sheets, 2), np.int64), np.full(sheets, -1, np.int64)
+    narrow = np.full(sheets, -1, np.int64)
     active = np.flatnonzero(element_active)
     if not len(active):
-        return Patches(0, of_element, origin, scale, shape, base, np.zeros(0, np.int64))
+        return Patches(0, of_element, origin, scale, shape, base, np.zeros(0, np.int64), narrow)
     patch_area = areas[active].sum() / target
     order = active[np.argsort(element_sheet[active], kind="stable")]
     used, starts = np.unique(element_sheet[order], return_index=True)
@@ -196,6 +200,7 @@ def make_patches(
                     along = (int(patch.max()) + 1) // shares.shape[1]
                     profiles.append(Profile(parts, count, along, shares))
                     parts += along * len(shares)
+                    narrow[sheet] = int(np.argmin(extent))
                 cells, count = cells + table.size, count + int(patch.max()) + 1
                 continue
         corners = (elements[members] @ planes.sheet_axes[sheet % fronts].T - low) / extent
@@ -233,7 +238,7 @@ def make_patches(
     column = np.concatenate(grid)
     column = np.where(column < 0, count - 1 - column, column)
     after = tuple(replace(p, first_column=count + p.first_column) for p in profiles)
-    return Patches(count, of_element, origin, scale, shape, base, column, after)
+    return Patches(count, of_element, origin, scale, shape, base, column, narrow, after)
 
 
 def _is_strip(grid: Grid, patch_area: float) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import polygons, radiosity
-from .arrays import product
+from .arrays import dots, product
 from .bright import Bright, Source
 from .daylight import Daylight
 from .errors import SceneError
@@ -62,6 +62,8 @@ class Field:
         ``sources`` are followed through [lm/m²].
     by_patches : (e,) float
         Illuminance whose reflection patches send out: all but sun patches [lx].
+    beside : float
+        Reflected sunlight that escapes beyond the elements' mean shares, as it falls beside their middles [lm].
     adjusted : float
         What means over areas were out by before the light was made to add up, without regard to sign [lm].
     """
@@ -74,6 +76,7 @@ class Field:
     deep_emitted: np.ndarray
     deep_reflected: np.ndarray
     by_patches: np.ndarray
+    beside: float
     adjusted: float
 
     def of_cells(self, geometry: Geometry, initial: bool) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -148,7 +151,7 @@ def solve_light(
         recorder.skip("interreflection", "no surface reflects or emits diffusely")
         components["interreflected"] = np.zeros(count)
         none = np.zeros(0)
-        field = Field(components, none, none, [], 0, none, none, np.zeros(count), 0.0)
+        field = Field(components, none, none, [], 0, none, none, np.zeros(count), 0.0, 0.0)
     else:
         with recorder.stage("interreflection", 0.1):
             bright = ([], []) if quick else bright_few(geometry, sunlight)
@@ -220,12 +223,14 @@ def interreflect(
     if cycles == 0 or not reflectance.any():
         components["interreflected"] = np.zeros(len(sun))
         dark, out = np.zeros(len(sun)), float(np.abs(adjusted).sum())
-        return Field(components, none, by_globe, emitters, len(emitters), deep_emitted, none, dark, out)
-    first = np.zeros(len(sun))
+        return Field(components, none, by_globe, emitters, len(emitters), deep_emitted, none, dark, 0.0, out)
+    first, beside = np.zeros(len(sun)), 0.0
     if sunny:
         deep_reflected = reflectance * geometry.patch_means(sun - sunlight.blur)
         first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, exact, recorder.part(0.4, 0.8))
-        first, adjusted[1] = brought_home(transfer, first, share * (sun - sunlight.blur))
+        shifts = sunlight.shifts(geometry.triangles, geometry.planes.outline_sheet)
+        beside = float((geometry.areas * share * dots(transfer.slopes_of_lost, shifts)).sum())
+        first, adjusted[1] = brought_home(transfer, first, share * (sun - sunlight.blur), beside)
     smooth, once = geometry.patch_means(smooth), geometry.patch_means(first)
 
     def checkpoint() -> None:
@@ -241,7 +246,7 @@ def interreflect(
     again = np.maximum(first + transfer.on_elements(gather_patches(transfer, exitance, exact)), 0.0)
     adjusted[2] = transfer.conservation.missing @ exitance
     if cycles is None:
-        again, adjusted[3] = settled_home(transfer, again, sun + components["emitted"] + sky, share)
+        again, adjusted[3] = settled_home(transfer, again, sun + components["emitted"] + sky, share, beside)
     components["interreflected"] = again
     sources = [*emitters, *sunny]
     return Field(
@@ -253,6 +258,7 @@ def interreflect(
         deep_emitted,
         deep_reflected,
         sum(components.values()) - (sun - sunlight.blur if sunny else 0.0),
+        beside,
         float(np.abs(adjusted).sum()),
     )
 
@@ -362,11 +368,16 @@ def gather_patches(transfer: Transfer, exitance: np.ndarray, exact: bool) -> np.
     return product(transfer.form_factors, exitance, exact) + transfer.conservation.made_up(exitance)
 
 
-def brought_home(transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray) -> tuple[np.ndarray, float]:
-    """Illuminance that elements of exitance ``(e,)`` cause, made to sum to it where none escapes; lumens out by."""
+def brought_home(
+    transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray, beside: float = 0.0
+) -> tuple[np.ndarray, float]:
+    """Illuminance that elements of exitance ``(e,)`` cause, made to sum to it where none escapes; lumens out by.
+
+    ``beside``: lumens that escape beyond elements' mean shares.
+    """
     conservation = transfer.conservation
     flux = transfer.geometry.areas * exitance
-    escaping = _sum(flux, conservation.lost)
+    escaping = _sum(flux, conservation.lost) + beside
     sent = float(flux.sum()) - escaping
     missing = sent - _sum(conservation.kept, illuminance)
     if escaping > _CLOSED * sent:
@@ -378,13 +389,13 @@ def brought_home(transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarr
 
 
 def settled_home(
-    transfer: Transfer, interreflected: np.ndarray, initial: np.ndarray, share: np.ndarray
+    transfer: Transfer, interreflected: np.ndarray, initial: np.ndarray, share: np.ndarray, beside: float
 ) -> tuple[np.ndarray, float]:
     """Interreflected light as `brought_home`, when all of it is reflected again by ``share`` (e,)."""
     conservation, area = transfer.conservation, transfer.geometry.areas
     stays = area * share * (1 - conservation.lost)
     spread = _spread(transfer, interreflected)
-    missing = _sum(stays, initial + interreflected) - _sum(conservation.kept, interreflected)
+    missing = _sum(stays, initial + interreflected) - beside - _sum(conservation.kept, interreflected)
     # of the scene, not of the light at hand, so that lights add up
     trust = trusted(_sum(area * share, conservation.lost) / max(float((area * share).sum()), 1e-300))
     home = interreflected + trust * missing / max(1 - _sum(stays, spread), 1e-12) * spread

@@ -92,17 +92,47 @@ def light_elements(patches: list[SunPatch], elements: Triangles, outline_sheet) 
     direct, specular : (e,) float [lx]
         By patches that came straight, and by mirrors.
     """
-    near, some = [], []
-    for number, patch in enumerate(patches):
+    lit, near = _nearby(patches, elements, outline_sheet)
+    out = np.zeros((2, len(elements.corners)))
+    shapes = [patch.polygon for patch in lit]
+    for patch, mine, share in zip(lit, near, lit_shares(elements.corners, elements.areas, near, shapes), strict=True):
+        out[min(patch.order, 1), mine] += patch.illuminance * share
+    return out[0], out[1]
+
+
+def shifts(patches: list[SunPatch], elements: Triangles, outline_sheet) -> np.ndarray:
+    """Where within elements sunlight falls: its illuminance times the way from the element's centroid to its own.
+
+    Parameters
+    ----------
+    patches, elements, outline_sheet
+        As for `light_elements`.
+
+    Returns
+    -------
+    (e, 3) float [lx · m]
+    """
+    lit, near = _nearby(patches, elements, outline_sheet)
+    out = np.zeros((len(elements.corners), 3))
+    if not lit:
+        return out
+    _, parts, pieces = _lit_parts(elements.corners, near, [patch.polygon for patch in lit])
+    cut = np.concatenate([mine[part] for mine, part in zip(near, parts, strict=True)])
+    lux = np.repeat([patch.illuminance for patch in lit], [len(part) for part in parts])
+    away = polygons.centroids(pieces) - elements.corners[cut].mean(axis=1)
+    np.add.at(out, cut, (lux * polygons.areas(pieces) / elements.areas[cut])[:, None] * away)
+    return out
+
+
+def _nearby(patches: list[SunPatch], elements: Triangles, outline_sheet) -> tuple[list[SunPatch], list[np.ndarray]]:
+    """Patches on sides that have elements, and the elements that may lie in each."""
+    lit, near = [], []
+    for patch in patches:
         mine = elements.members.get(int(outline_sheet[patch.outline]) + (0 if patch.front else elements.sheets))
         if mine is not None:
             near.append(elements.around(mine, patch.polygon))
-            some.append(number)
-    out = np.zeros((2, len(elements.corners)))
-    shapes = [patches[number].polygon for number in some]
-    for number, mine, share in zip(some, near, lit_shares(elements.corners, elements.areas, near, shapes), strict=True):
-        out[min(patches[number].order, 1), mine] += patches[number].illuminance * share
-    return out[0], out[1]
+            lit.append(patch)
+    return lit, near
 
 
 def lit_shares(triangles, areas, some: list[np.ndarray], shapes: list[np.ndarray]) -> list[np.ndarray]:
@@ -122,24 +152,37 @@ def lit_shares(triangles, areas, some: list[np.ndarray], shapes: list[np.ndarray
     """
     if not shapes:
         return []
+    shares, parts, pieces = _lit_parts(triangles, some, shapes)
+    found = np.split(polygons.areas(pieces), np.cumsum([len(part) for part in parts])[:-1])
+    for mine, share, part, lit in zip(some, shares, parts, found, strict=True):
+        share[part] = lit / areas[mine[part]]
+    return shares
+
+
+def _lit_parts(triangles, some: list[np.ndarray], shapes: list[np.ndarray]):
+    """What of some triangles lies inside polygons, at least one, as for `lit_shares`.
+
+    Returns
+    -------
+    inside : list of (n,) float
+        1 for triangles that lie wholly inside each polygon.
+    parts : list of (k,) int
+        Those, of the ``some``, that each polygon cuts.
+    pieces : (sum of k, v, 3) float
+        What of these is inside.
+    """
     inward, offset = _borders(polygons.pad(shapes)[0])
-    shares, parts = [], []
+    insides, parts = [], []
     for number, mine in enumerate(some):
         a, b, c = (inward[number] @ triangles[mine].transpose(1, 2, 0)) - offset[number][:, None]
         inside = (np.minimum(np.minimum(a, b), c) >= 0).all(axis=0)
         parts.append(np.flatnonzero(~inside & (np.maximum(np.maximum(a, b), c) > 0).all(axis=0)))
-        shares.append(inside.astype(float))
-    count = [len(part) for part in parts]
-    of = np.repeat(np.arange(len(parts)), count)
-    cut = np.concatenate([mine[part] for mine, part in zip(some, parts, strict=True)])
-    lit = triangles[cut]
+        insides.append(inside.astype(float))
+    of = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+    pieces = triangles[np.concatenate([mine[part] for mine, part in zip(some, parts, strict=True)])]
     for edge in range(inward.shape[1]):
-        lit = polygons.clip(lit, inward[of, edge], offset[of, edge])
-    for share, part, found in zip(
-        shares, parts, np.split(polygons.areas(lit) / areas[cut], np.cumsum(count)[:-1]), strict=True
-    ):
-        share[part] = found
-    return shares
+        pieces = polygons.clip(pieces, inward[of, edge], offset[of, edge])
+    return insides, parts, pieces
 
 
 def _borders(shapes) -> tuple[np.ndarray, np.ndarray]:

@@ -15,7 +15,7 @@ from . import polygons
 from .outlines import Outlines
 from .pieces import tightened
 from .projection import reflect
-from .sun_patches import SunPatch, Triangles, light_elements
+from .sun_patches import SunPatch, Triangles, light_elements, shifts
 from .tracing import DEEPEST_CHAIN
 
 _ROUNDING = 1e-11
@@ -81,6 +81,10 @@ class Sunlight:
         direct, specular : (e,) float [lx]
         """
         return light_elements(self.patches, elements, outline_sheet)
+
+    def shifts(self, elements: Triangles, outline_sheet) -> np.ndarray:
+        """(e, 3) float: where within elements the patches' light falls; see `sun_patches.shifts`."""
+        return shifts(self.patches, elements, outline_sheet)
 
     @property
     def blur(self) -> np.ndarray | float:

@@ -26,6 +26,7 @@ from .options import Options, checked_scene
 from .planes import find_planes
 from .scene import Scene
 from .sky import UniformSky
+from .slopes import slopes
 from .stages import Progress, Stage
 from .tracing import ChainLimits
 
@@ -127,6 +128,14 @@ class Transfer:
     def spread(self) -> np.ndarray:
         """(e,) float: `Conservation.spread` on the elements."""
         return self.on_elements(self.conservation.spread)
+
+    @cached_property
+    def slopes_of_lost(self) -> np.ndarray:
+        """(e, 3) float: how `Conservation.lost` changes over each element [1/m]; 0 for those in no run."""
+        found = np.zeros((len(self.geometry.fracture.elements), 3))
+        for grid in self.geometry.fracture.grids:
+            found[grid.elements] = slopes(grid, self.conservation.lost)
+        return found
 
     @cached_property
     def sheet_corners(self) -> dict[int, tuple[np.ndarray, np.ndarray]]:
