@@ -38,8 +38,11 @@ _FINEST = 1e-6
 """Change left to come, over all light, below which products are summed in float64."""
 
 _SOURCE_ROWS = 256
-_SOURCE_PAIRS = 8_000
+_SOURCE_PAIRS = 32_000
 """Receivers, and pairs of these and a source, that one thread looks at together: at least, and about."""
+
+_FOR_ONE_THREAD = 4
+"""Handfuls of these up to which threads would wait for each other more than they save."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -332,7 +335,8 @@ def _gather_bright(
         def report(part: float) -> None:
             progress(begun + share * part, "interreflection")
 
-        run_parallel(work, _handfuls(plane, together, len(sources)), transfer.threads, report)
+        handfuls = _handfuls(plane, together, len(sources))
+        run_parallel(work, handfuls, 1 if len(handfuls) <= _FOR_ONE_THREAD else transfer.threads, report)
         done = begun + share
         # there is other, even light as well: where this is faint, its unevenness matters little
         return (found + found.mean())[:, None]
