@@ -177,7 +177,13 @@ def situations() -> Iterator[Situation]:
         lambda: against_paths(behind_a_blind(10), CLOUDY, ("slat 4",), 0.02, 60_000, backs=("slat 4",)),
     )
     for name, scene, light, names, options in (
-        ("behind a blind of 40 slats, in the Sun", lambda: behind_a_blind(40), SUNNY, walls, {"backs": ("slat 20",)}),
+        (
+            "behind a blind of 40 slats, in the Sun",
+            lambda: behind_a_blind(40),
+            SUNNY,
+            walls,
+            {"count": 1_200_000, "backs": ("slat 20",)},
+        ),
         ("a window frame, half of it outside", framed, CLOUDY, ("lintel", "floor"), {"relative": 0.02}),
         ("a screen that mirrors in part", screened, CLOUDY, walls, {"backs": ("screen",)}),
         ("walls that end on glass", partitioned, CLOUDY, walls, {"backs": ("near",)}),
