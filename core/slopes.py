@@ -24,7 +24,7 @@ def slopes(grid: Grid, values: np.ndarray) -> np.ndarray:
     cells = values[grid.elements].reshape(*grid.shape, 2).mean(axis=2)
     steps = np.stack([_steps(cells), _steps(cells.T).T], axis=2).reshape(-1, 2)
     axes = np.stack([grid.along_rows, grid.along_columns])
-    return np.repeat(np.linalg.solve(axes @ axes.T, steps.T).T @ axes, 2, axis=0)
+    return np.repeat(steps @ np.linalg.pinv(axes).T, 2, axis=0)
 
 
 def _steps(cells: np.ndarray) -> np.ndarray:
