@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 _PRODUCT_ROWS = 128
 _PRODUCT_COLUMNS = 2048
-
-_FEW_COLUMNS = 1 / 3
-"""Over all columns: rows with more of them are not copied."""
 
 
 def pick(matrix: np.ndarray, row, column) -> np.ndarray:
@@ -43,12 +38,12 @@ def box_corners(low, high) -> np.ndarray:
 
 
 def product(matrix: np.ndarray, vector: np.ndarray, exact: bool = False) -> np.ndarray:
-    """(m,) float: a float32 matrix times a float64 vector.
+    """(m,) or (m, k) float: a float32 matrix times a float64 vector or vectors ``(c,)`` or ``(c, k)``.
 
     Summed in float32, some columns at a time, which errs by less than 1e-6; ``exact``: in float64, some rows at a time,
     so that sums of products are products of sums.
     """
-    out = np.zeros(len(matrix))
+    out = np.zeros((len(matrix), *vector.shape[1:]))
     if exact:
         for first in range(0, len(matrix), _PRODUCT_ROWS):
             rows = slice(first, first + _PRODUCT_ROWS)
@@ -62,38 +57,3 @@ def product(matrix: np.ndarray, vector: np.ndarray, exact: bool = False) -> np.n
         columns = slice(first, first + _PRODUCT_COLUMNS)
         out += matrix[:, columns] @ shares[columns]
     return scale * out
-
-
-@dataclass(frozen=True, eq=False)
-class Banded:
-    """A matrix whose rows share their zeros with those beside them: without the columns that some rows have none in.
-
-    Attributes
-    ----------
-    parts : list of ((c,) int, (r, c))
-        Columns, and what is in them, of some rows after others.
-    """
-
-    parts: list[tuple[np.ndarray, np.ndarray]]
-
-    @classmethod
-    def of(cls, matrix: np.ndarray) -> Banded:
-        """That of a matrix."""
-        parts = []
-        for first in range(0, len(matrix), _PRODUCT_ROWS):
-            some = matrix[first : first + _PRODUCT_ROWS]
-            columns = np.flatnonzero(some.any(axis=0))
-            if len(columns) > _FEW_COLUMNS * matrix.shape[1]:
-                parts.append((np.arange(matrix.shape[1]), some))
-            else:
-                parts.append((columns, some.take(columns, axis=1)))
-        return cls(parts)
-
-    def any(self) -> bool:
-        """Whether there is anything but zeros in it."""
-        return any(part.size > 0 for _, part in self.parts)
-
-    def times(self, vector: np.ndarray, exact: bool = False) -> np.ndarray:
-        """(m,) float: see `product`."""
-        found = [product(part, vector.take(columns), exact) for columns, part in self.parts]
-        return np.concatenate(found) if found else np.zeros(0)

@@ -61,8 +61,8 @@ def lumen_balance(result: Result) -> Balance:
     outside = sum(components[name] for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular"))
     entering = float((area * (emitted + outside * (absorptance + reflectance))).sum())
     flux = area * (emitted + reflectance * illuminance)
-    open_share = transfer.sky_direct.sum(axis=1)
-    open_share[transfer.specular_rows] += transfer.sky_specular.sum(axis=1)
+    every = np.ones(geometry.targets.columns)
+    open_share = transfer.sky_direct.times(every) + transfer.sky_specular.times(every)
     escaped, unlit, lost = (
         float(flux @ transfer.on_elements(share)) for share in (open_share, transfer.unlit, transfer.truncated)
     )
@@ -98,7 +98,7 @@ def _cut_sky(result: Result) -> float:
     kept = transfer.geometry.areas_kept  # what mirrors pass on is cut where it lands
     if not transfer.truncated.any() or not result.sky.any():
         return 0.0
-    weight = transfer.sky_direct.sum(axis=0)
+    weight = transfer.sky_direct.sums()
     total = float(weight.sum())
     mean = float(weight @ result.sky) / total if total else 0.0
     return float(np.pi * mean * (kept @ transfer.on_elements(transfer.truncated)))

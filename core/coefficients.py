@@ -152,7 +152,7 @@ def find_coefficients(
     """
     geometry = transfer.geometry
     looked = None if places is None else _look(transfer, places)
-    seen = _seen(transfer.sky_direct) | _seen(transfer.sky_specular)
+    seen = transfer.sky_direct.columns() | transfer.sky_specular.columns()
     parcels = np.flatnonzero(seen if looked is None else seen | _seen(looked[0]))
     receivers = len(geometry.reported) if places is None else len(places.points)
     by_sun = np.zeros((2, len(suns), receivers), np.float32)
@@ -209,6 +209,7 @@ def find_coefficients(
 
 
 def _seen(matrix: np.ndarray) -> np.ndarray:
+    """(c,) bool: columns with anything but zeros."""
     seen = np.zeros(matrix.shape[1], bool)
     for first in range(0, len(matrix), _ROWS):
         seen |= (matrix[first : first + _ROWS] != 0).any(axis=0)
@@ -217,8 +218,8 @@ def _seen(matrix: np.ndarray) -> np.ndarray:
 
 def _sky_rows(transfer: Transfer, parcels: np.ndarray) -> np.ndarray:
     """(m, k) float32: illuminance of the nodes by parcels of unit luminance, without diffuse reflection."""
-    rows = transfer.sky_direct[:, parcels]
-    rows[transfer.specular_rows] += transfer.sky_specular[:, parcels]
+    rows = transfer.sky_direct.some_columns(parcels)
+    rows += transfer.sky_specular.some_columns(parcels)
     rows *= np.float32(np.pi)
     return rows
 

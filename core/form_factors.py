@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from .geometry import Geometry, sight_of
 from .nodes import Nodes, settled
 from .parallel import chunks_of_receivers, run_parallel
 from .scattered import scattered_sight
+from .sparse import SparseRows
 from .specular import GroupSight
 from .tracing import ChainLimits
 
@@ -51,17 +52,17 @@ _OF_REFLECTED = 0.2
 """About how bright surfaces are beside the sky that they show with."""
 
 
+_DENSE = ("form_factors", "unlit", "truncated")
+"""What `Rows` holds as whole arrays."""
+
+
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Form factors of nodes, as in `Transfer`; ``specular_rows`` says which nodes see the sky in mirrors.
-
-    ``deep`` holds, for few nodes or none, what comes by way of many mirrors.
-    """
+    """Form factors of nodes, as in `Transfer`; ``deep`` holds, for few or none, what comes by way of many mirrors."""
 
     form_factors: np.ndarray
-    sky_direct: np.ndarray
-    sky_specular: np.ndarray
-    specular_rows: np.ndarray
+    sky_direct: SparseRows
+    sky_specular: SparseRows
     unlit: np.ndarray
     truncated: np.ndarray
     deep: dict[int, np.ndarray]
@@ -70,38 +71,36 @@ class Rows:
     def empty(cls, count: int, geometry: Geometry) -> Rows:
         """Room for rows, which costs no memory until they are entered."""
         targets = geometry.targets
-        specular = (count, targets.columns) if geometry.outlines.any_specular else (0, targets.columns)
         return cls(
             np.empty((count, targets.patches.count), np.float32),
-            np.zeros((count, targets.columns), np.float32),
-            np.zeros(specular, np.float32),
-            np.zeros(count, bool),
+            SparseRows((count, targets.columns)),
+            SparseRows((count, targets.columns)),
             np.zeros(count, np.float32),
             np.zeros(count, np.float32),
             {},
         )
 
     def first(self, count: int) -> Rows:
-        """The first so many rows."""
-        return replace(self, **{f.name: getattr(self, f.name)[:count] for f in fields(self) if f.name != "deep"})
+        """The first so many rows, beyond which none were entered."""
+        dense = {name: getattr(self, name)[:count] for name in _DENSE}
+        return replace(self, **dense, sky_direct=self.sky_direct.of(count), sky_specular=self.sky_specular.of(count))
 
     def kept(self, used: int, count: int, geometry: Geometry) -> Rows:
         """Room for more rows, after the first ``used`` of these."""
         wide = Rows.empty(count, geometry)
-        wide.deep.update(self.deep)
-        for name in (f.name for f in fields(self) if f.name != "deep"):
+        for name in _DENSE:
             getattr(wide, name)[:used] = getattr(self, name)[:used]
-        return wide
+        sky = {name: getattr(self, name).of(count) for name in ("sky_direct", "sky_specular")}
+        return replace(wide, **sky, deep=self.deep)
 
     def put(self, members: np.ndarray, rows: Gathered) -> None:
         """Enter the rows of some nodes."""
         self.form_factors[members] = rows.patches
-        self.sky_direct[members] = rows.sky_direct
+        self.sky_direct.enter(members, rows.sky_direct)
         self.unlit[members] = rows.unlit
         self.truncated[members] = rows.truncated
         if rows.sky_specular is not None:
-            self.sky_specular[members] = rows.sky_specular
-            self.specular_rows[members] = True
+            self.sky_specular.enter(members, rows.sky_specular)
         if rows.deep is not None:
             lit = np.flatnonzero(rows.deep.any(axis=1))
             self.deep.update(zip(members[lit].tolist(), rows.deep[lit], strict=True))
@@ -265,12 +264,8 @@ class Light:
         groups = np.zeros((patches, _GROUPS), np.float32)
         groups[np.arange(patches), sheet * _GROUPS // (2 * len(planes.sheet_surface))] = 1.0
         some = slice(members[0], members[-1] + 1) if len(members) else slice(0, 0)
-        sky = rows.sky_direct[some] @ sides
-        mirrored = np.flatnonzero(rows.specular_rows[some])
-        for first in range(0, len(mirrored), _ROWS):  # few at once: copies of them stay in cache
-            few = mirrored[first : first + _ROWS]
-            sky[few] += rows.sky_specular[some].take(few, axis=0) @ sides
-        return cls(sky.astype(float), (rows.form_factors[some] @ groups).astype(float))
+        sky = rows.sky_direct.times(sides)[some] + rows.sky_specular.times(sides)[some]
+        return cls(sky, (rows.form_factors[some] @ groups).astype(float))
 
     def followed(self, other: Light) -> Light:
         """That of these nodes and of others after them."""
@@ -343,10 +338,8 @@ class Conservation:
         """Compare what patches send out with what nodes receive."""
         area = geometry.fracture.element_areas
         kept = geometry.areas_kept
-        every = np.ones(rows.sky_direct.shape[1])
-        sky = product(rows.sky_direct, every)
-        if rows.specular_rows.any():
-            sky += product(rows.sky_specular, every)
+        every = np.ones(geometry.targets.columns)
+        sky = rows.sky_direct.times(every) + rows.sky_specular.times(every)
         lost = nodes.weights.apply(sky + rows.unlit + rows.truncated)
         weights = nodes.weights
         share = weights.gathered(kept, len(nodes.points))

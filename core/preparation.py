@@ -192,11 +192,7 @@ def _unaffected(reuse: Transfer | None, geometry: Geometry, fingerprint: Fingerp
     # which outlines are large depends on all of them
     if geometry.outlines.facets is not None or before.outlines.facets is not None:
         return None, f"{kept}, as there are more outlines than are projected"
-    mirrored = np.zeros(len(reuse.nodes.points), bool)
-    mirrored[reuse.specular_rows] = True
-    rows = Rows(
-        reuse.form_factors, reuse.sky_direct, reuse.sky_specular, mirrored, reuse.unlit, reuse.truncated, deep={}
-    )
+    rows = Rows(reuse.form_factors, reuse.sky_direct, reuse.sky_specular, reuse.unlit, reuse.truncated, deep={})
     return Unaffected.of(geometry, before, reuse.nodes, rows, fingerprint.changed(reuse.fingerprint)), kept
 
 
@@ -282,22 +278,18 @@ def _prepared(
         exchange = Exchange(
             patch_factors.astype(np.float32, copy=False), spread, conservation.missing, enclosures.of_patches
         )
-    sees_out = bool(gathered.sky_direct.any() or gathered.sky_specular.any())
+    sees_out = gathered.sky_direct.any() or gathered.sky_specular.any()
     if reuse is not None:
         recorder.skip("reuse", f"{_difference(reuse, fingerprint)}; {kept} of {len(nodes.points)} receivers {what}")
     for name, why in needless(geometry, sees_out, convex is not None):
         recorder.skip(name, why)
     recorder.report(1.0, "prepared")
-    specular_rows = np.flatnonzero(gathered.specular_rows)
     deep_rows = np.array(sorted(gathered.deep), np.int64)
     return Transfer(
         geometry=geometry,
         form_factors=gathered.form_factors,
-        sky_direct=gathered.sky_direct if sees_out else _nothing(gathered.sky_direct),
-        sky_specular=gathered.sky_specular[specular_rows]
-        if len(specular_rows)
-        else np.zeros((0, geometry.targets.columns), np.float32),
-        specular_rows=specular_rows,
+        sky_direct=gathered.sky_direct,
+        sky_specular=gathered.sky_specular,
         deep_factors=np.stack([gathered.deep[row] for row in deep_rows.tolist()])
         if len(deep_rows)
         else np.zeros((0, geometry.targets.patches.count), np.float32),
@@ -319,16 +311,11 @@ def _prepared(
     )
 
 
-def _nothing(matrix: np.ndarray) -> np.ndarray:
-    """Zeros of a matrix's shape that take no memory."""
-    return np.broadcast_to(matrix.dtype.type(0), matrix.shape)
-
-
 def bytes_held(geometry: Geometry, nodes: int) -> float:
-    """What a transfer with so many nodes holds, about."""
+    """What a transfer with so many nodes holds at most, about: every receiver may see all of the sky."""
     columns, patches = geometry.targets.columns, geometry.targets.patches.count
     specular = 2 if geometry.outlines.any_specular else 1
-    return 4.0 * nodes * (patches + 4 / 3 * specular * columns) + 8.0 * patches**2  # see `Transfer.seen_sky`
+    return 4.0 * nodes * (patches + specular * columns) + 8.0 * patches**2
 
 
 def _check_memory(geometry: Geometry, nodes: int, memory: float | None) -> None:

@@ -123,9 +123,9 @@ def solve_light(
         recorder.skip("sky", "nothing sees the sky or the ground")
     elif sky.any():
         with recorder.stage("sky", 0.0):
-            direct, specular = (np.pi * seen.times(sky, exact) for seen in transfer.seen_sky)
-            components["sky_direct"] = transfer.on_elements(direct)
-            components["sky_specular"] = _of_rows(transfer, transfer.specular_rows, specular)
+            for name, seen in (("sky_direct", transfer.sky_direct), ("sky_specular", transfer.sky_specular)):
+                if seen.any():
+                    components[name] = transfer.on_elements(np.pi * seen.times(sky, exact))
     else:
         recorder.skip("sky", "no sky and no ground light")
 
@@ -431,12 +431,8 @@ def sampled_errors(transfer: Transfer, light: Daylight, sky: np.ndarray, field: 
     """(e,) float: relative errors by the globe's fineness, and by the patches' if asked; 95 of 100 are about below."""
     trial, nodes, geometry = transfer.trial, transfer.nodes, transfer.geometry
     exitance = field.patch_exitance + field.patch_emitted
-    mirrored = np.isin(trial.nodes, transfer.specular_rows)
-    ours = np.pi * product(transfer.sky_direct[trial.nodes], sky) + product(
-        transfer.form_factors[trial.nodes], exitance
-    )
-    rows = np.searchsorted(transfer.specular_rows, trial.nodes[mirrored])
-    ours[mirrored] += np.pi * product(transfer.sky_specular[rows], sky)
+    from_sky = np.pi * (transfer.sky_direct.times(sky) + transfer.sky_specular.times(sky))
+    ours = from_sky[trial.nodes] + product(transfer.form_factors[trial.nodes], exitance)
     finer = np.pi * product(trial.sky, sky_column(trial.targets, light))
     finer += product(trial.cells, geometry.cell_means(geometry.from_patches(exitance)))
     more = np.zeros(len(ours))

@@ -28,6 +28,7 @@ from .nodes import Nodes
 from .options import Options
 from .planes import find_planes
 from .scene import Scene
+from .sparse import SparseRows
 from .stages import Stage
 from .tracing import ChainLimits, exact_mirrors
 from .transfer import Transfer
@@ -40,20 +41,18 @@ _DAMAGED = (
 )
 """What NumPy and zipfile raise over bytes that they cannot make sense of, and `_array` over what does not fit."""
 
-FORMAT = 5
+FORMAT = 6
 """Raised with every change of what files hold or of how it is found."""
 
 _ARRAYS = (
     "form_factors",
-    "sky_direct",
-    "sky_specular",
-    "specular_rows",
     "deep_factors",
     "deep_rows",
     "unlit",
     "truncated",
     "unsure",
 )
+_SKY = ("sky_direct", "sky_specular")
 _WEIGHTS = ("weights", "around")
 _PARTS = ("of_patches", "of_nodes", "of_elements")
 
@@ -72,6 +71,8 @@ def save_transfer(transfer: Transfer, path) -> Path:
         "stages": [asdict(stage) for stage in transfer.stages],
     }
     arrays = {name: getattr(transfer, name) for name in _ARRAYS}
+    for name in _SKY:
+        arrays |= {f"{name}_{part}": values for part, values in getattr(transfer, name).packed().items()}
     arrays["lattice_nodes"] = np.array(len(transfer.lattice.points))
     for name in ("points", "element"):
         arrays[f"nodes_{name}"] = getattr(transfer.nodes, name)
@@ -204,7 +205,16 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
         lattice.shared,
         lattice.askew,
     )
-    specular_rows = array("specular_rows", np.int64, None, below=count)
+    sky = {
+        name: SparseRows.unpacked(
+            (count, columns),
+            array(f"{name}_sizes", np.int64, None, 2, below=max(count, columns) + 1),
+            array(f"{name}_rows", np.int64, None, below=count),
+            array(f"{name}_columns", np.int64, None, below=columns),
+            array(f"{name}_values", np.float32, None),
+        )
+        for name in _SKY
+    }
     deep_rows = array("deep_rows", np.int64, None, below=count)
     missing = array("conservation_missing", np.float64, patches)
     of_patches = array("enclosures_of_patches", np.int64, patches, below=max(patches, 1))
@@ -218,9 +228,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
     return Transfer(
         geometry=geometry,
         form_factors=array("form_factors", np.float32, count, patches),
-        sky_direct=array("sky_direct", np.float32, count, columns),
-        sky_specular=array("sky_specular", np.float32, len(specular_rows), columns),
-        specular_rows=specular_rows,
+        **sky,
         deep_factors=array("deep_factors", np.float32, len(deep_rows), patches),
         deep_rows=deep_rows,
         exchange=Exchange(

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .arrays import Banded
 from .blockers import frame
 from .convex import ConvexRoom
 from .daylight import Daylight
@@ -27,6 +26,7 @@ from .planes import find_planes
 from .scene import Scene
 from .sky import UniformSky
 from .slopes import slopes
+from .sparse import SparseRows
 from .stages import Progress, Stage
 from .tracing import ChainLimits
 
@@ -57,11 +57,10 @@ class Transfer:
         How many times finer than usual the scene is resolved.
     form_factors : (m, p) float32
         From each node (receiver) to each patch.
-    sky_direct : (m, c) float32
+    sky_direct : SparseRows (m, c)
         From each node to each sky parcel, and last to the ground; through panes, without mirrors.
-    sky_specular : (k, c) float32
-        The same by way of mirrors, for the nodes in ``specular_rows``.
-    specular_rows : (k,) int
+    sky_specular : SparseRows (m, c)
+        The same by way of mirrors; rows that were not entered see no sky in any.
     deep_factors : (j, p) float32
         The part of ``form_factors`` that comes by more mirrors than bright polygons are followed through, for the nodes
         in ``deep_rows``.
@@ -81,9 +80,8 @@ class Transfer:
 
     geometry: Geometry
     form_factors: np.ndarray
-    sky_direct: np.ndarray
-    sky_specular: np.ndarray
-    specular_rows: np.ndarray
+    sky_direct: SparseRows
+    sky_specular: SparseRows
     deep_factors: np.ndarray
     deep_rows: np.ndarray
     exchange: Exchange
@@ -155,12 +153,7 @@ class Transfer:
     @cached_property
     def sees_out(self) -> bool:
         """Whether any receiver sees anything of the sky or the ground, straight or by mirrors."""
-        return any(seen.any() for seen in self.seen_sky)
-
-    @cached_property
-    def seen_sky(self) -> tuple[Banded, Banded]:
-        """``sky_direct`` and ``sky_specular`` as they are multiplied with a sky, of which most receivers see little."""
-        return Banded.of(self.sky_direct), Banded.of(self.sky_specular)
+        return self.sky_direct.any() or self.sky_specular.any()
 
     def on_elements(self, values: np.ndarray) -> np.ndarray:
         """Values on the elements ``(e,)`` from values at the nodes ``(m,)``."""

@@ -80,7 +80,7 @@ class Unaffected:
         mine, earlier = members[earlier[now] >= 0], earlier[now][earlier[now] >= 0]
         cut = np.flatnonzero(self.patch < 0)
         # light comes by mirrors from where nobody looks
-        keep = ~self.rows.form_factors[np.ix_(earlier, cut)].any(axis=1) & ~self.rows.specular_rows[earlier]
+        keep = ~self.rows.form_factors[np.ix_(earlier, cut)].any(axis=1) & ~self.rows.sky_specular.held()[earlier]
         mine, earlier = mine[keep], earlier[keep]
         points, normals = nodes.points[mine], self.geometry.element_normals[nodes.element[mine]]
         blind = np.ones(len(mine), bool)
@@ -95,7 +95,7 @@ class Unaffected:
             some, old = mine[first : first + _ROWS], earlier[first : first + _ROWS]
             rows.form_factors[some] = 0.0
             rows.form_factors[np.ix_(some, self.patch[same])] = self.rows.form_factors[np.ix_(old, same)]
-            rows.sky_direct[some] = self.rows.sky_direct[old]
+            rows.sky_direct.enter(some, self.rows.sky_direct.some_rows(old))
         rows.unlit[mine] = self.rows.unlit[earlier]
         rows.truncated[mine] = self.rows.truncated[earlier]
 

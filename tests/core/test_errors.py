@@ -157,7 +157,7 @@ def test_one_triangle_is_a_scene(rho, exitance):
 def test_what_is_not_finite_is_never_handed_out():
     """Should a number fail all the same, the surface is named instead of a result with holes."""
     transfer = prepare_coarse(box(BLACK, without=("ceiling",)))
-    transfer.sky_direct[0] = np.nan
+    transfer.sky_direct.blocks[0].values[0] = np.nan
     with pytest.raises(ArithmeticError, match="Illuminance on 'floor' is not finite"):
         transfer.solve(UNIFORM)
 

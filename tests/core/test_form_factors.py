@@ -39,12 +39,9 @@ def closed_box():
 
 def rows_of(transfer):
     """The rows that a transfer was made of."""
-    count = len(transfer.unlit)
-    mirrored = np.zeros((count, transfer.sky_direct.shape[1]), np.float32)
-    mirrored[transfer.specular_rows] = transfer.sky_specular
     deep = dict(zip(transfer.deep_rows.tolist(), transfer.deep_factors, strict=True))
-    seen = np.isin(np.arange(count), transfer.specular_rows)
-    return Rows(transfer.form_factors, transfer.sky_direct, mirrored, seen, transfer.unlit, transfer.truncated, deep)
+    sky = transfer.sky_direct, transfer.sky_specular
+    return Rows(transfer.form_factors, *sky, transfer.unlit, transfer.truncated, deep)
 
 
 def kinds_of_light(transfer):
@@ -87,8 +84,7 @@ def test_kinds_of_light_share_out_what_nodes_see(name, request):
     transfer = request.getfixturevalue(name)
     kinds = kinds_of_light(transfer)
     assert (kinds >= 0).all() and len(kinds) == len(transfer.nodes.points)
-    sky = transfer.sky_direct.sum(axis=1, dtype=float)
-    sky[transfer.specular_rows] += transfer.sky_specular.sum(axis=1)
+    sky = transfer.sky_direct.dense().sum(axis=1, dtype=float) + transfer.sky_specular.dense().sum(axis=1)
     reflected = transfer.form_factors.sum(axis=1, dtype=float)
     share = 1.0 if name == "closed_box" else 0.2
     np.testing.assert_allclose(kinds[:, :4].sum(axis=1), sky, atol=1e-5)
@@ -132,8 +128,7 @@ def test_what_is_missing_is_spread_by_what_receivers_see(open_room):
     """One lumen more makes one lumen; those who see the more of what the sky lights get the more of it."""
     conservation, geometry = open_room.conservation, open_room.geometry
     assert conservation.kept @ open_room.nodes.weights.apply(conservation.spread) == pytest.approx(1, rel=1e-6)
-    sky = open_room.sky_direct.sum(axis=1, dtype=float)
-    sky[open_room.specular_rows] += open_room.sky_specular.sum(axis=1)
+    sky = open_room.sky_direct.dense().sum(axis=1, dtype=float) + open_room.sky_specular.dense().sum(axis=1)
     lit = np.zeros(len(sky))
     for _ in range(12):
         on_elements = geometry.fracture.element_areas * open_room.nodes.on_elements(sky + lit)
@@ -254,7 +249,7 @@ def test_receivers_are_added_where_a_shadow_has_an_edge():
     faces = result.faces_of("ground")
     exact = result.at(result.centroids[faces], result.normals[faces])
     open_ = np.pi * 1000
-    first = np.pi * transfer.sky_direct[: len(lattice.points)].astype(float) @ result.sky
+    first = np.pi * transfer.sky_direct.dense()[: len(lattice.points)].astype(float) @ result.sky
     by_lattice = geometry.fracture.side_means(lattice.on_elements(first))[faces]
     settled = rms((result.illuminance[faces] - exact) / open_)
     assert settled < 0.02

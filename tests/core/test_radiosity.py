@@ -183,7 +183,7 @@ def test_interreflection_is_the_series_of_the_transfer(reflectances, cycles):
         assert not result.components["interreflected"].any()
         return
     cuts, patch = transfer.geometry.fracture, transfer.geometry.targets.patches.of_element
-    initial = np.pi * 1000 * transfer.on_elements(transfer.sky_direct[:, :-1].sum(axis=1))
+    initial = np.pi * 1000 * transfer.on_elements(transfer.sky_direct.dense()[:, :-1].sum(axis=1))
     area = np.bincount(patch[patch >= 0], weights=cuts.element_areas[patch >= 0])
     mean = np.bincount(patch[patch >= 0], weights=(cuts.element_areas * initial)[patch >= 0]) / area
     rho = np.zeros(len(area))
