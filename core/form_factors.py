@@ -250,7 +250,8 @@ class Light:
         """That of some nodes, all sky and all surfaces being equally bright.
 
         The sides of the sky blend into each other: between sharp ones light would seem to change from node to node
-        where it does not.
+        where it does not. Nothing here is left to BLAS, whose threads would stay awake and in the way of those that
+        look from the next nodes.
         """
         targets, planes = geometry.targets, geometry.planes
         east, north = targets.globe.directions[: targets.sky_parcels, :2].T
@@ -261,11 +262,16 @@ class Light:
         sheet = np.zeros(patches, np.int64)
         mine = targets.patches.of_element >= 0
         sheet[targets.patches.of_element[mine]] = cuts.element_sheet[mine]
-        groups = np.zeros((patches, _GROUPS), np.float32)
-        groups[np.arange(patches), sheet * _GROUPS // (2 * len(planes.sheet_surface))] = 1.0
-        some = slice(members[0], members[-1] + 1) if len(members) else slice(0, 0)
-        sky = rows.sky_direct.times(sides)[some] + rows.sky_specular.times(sides)[some]
-        return cls(sky, (rows.form_factors[some] @ groups).astype(float))
+        group = sheet * _GROUPS // (2 * len(planes.sheet_surface))
+        order = np.argsort(group, kind="stable")
+        begin = np.flatnonzero(np.diff(group[order], prepend=-1))
+        reflected = np.zeros((len(members), _GROUPS))
+        for first in range(0, len(members), _ROWS):
+            some = rows.form_factors[members[first : first + _ROWS]]
+            sums = np.add.reduceat(some.take(order, axis=1), begin, axis=1) if patches else some
+            reflected[first : first + _ROWS, group[order[begin]]] = sums
+        sky = rows.sky_direct.sums_of_rows(sides) + rows.sky_specular.sums_of_rows(sides)
+        return cls(sky[members], reflected)
 
     def followed(self, other: Light) -> Light:
         """That of these nodes and of others after them."""

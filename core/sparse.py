@@ -76,6 +76,14 @@ class SparseRows:
             out[block.rows] = product(block.values, vector.take(block.columns, axis=0), exact)
         return out
 
+    def sums_of_rows(self, weights: np.ndarray) -> np.ndarray:
+        """(m, k) float: the same as ``times(weights)`` for few weights ``(c, k)`` float32, in one thread."""
+        out = np.zeros((self.shape[0], weights.shape[1]))
+        for block in self.blocks:
+            for k, weight in enumerate(weights.T.take(block.columns, axis=1)):
+                out[block.rows, k] = np.einsum("rc,c->r", block.values, weight)
+        return out
+
     def sums(self) -> np.ndarray:
         """(c,) float: sums of the columns."""
         out = np.zeros(self.shape[1])
