@@ -28,9 +28,6 @@ _SKY_SUBDIVISION = 4
 _WITHIN_BEAM = 5
 """Order of the lattice of rays that stand for a mirrored beam wider than the sky's parcels: five."""
 
-_FEW = 30
-"""What goes to fewer than one in so many places is sorted, rather than the whole matrix gone through."""
-
 
 @dataclass(frozen=True, eq=False)
 class Targets:
@@ -284,15 +281,16 @@ def _add_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
         return
     parcels = s.beams.hemisphere.parcels[s.beams.columns]
     free = np.where(s.view.seen == OPEN, s.weights, 0.0)
-    if s.beams.hemisphere.globe is not targets.globe:
-        out[s.rows] += _spread_over_sky(free, parcels, s.beams.hemisphere, targets)
-        return
-    above = parcels < targets.sky_parcels
-    if len(s.rows) == len(out):
-        out[:, parcels[above]] += free[:, above]
+    if s.beams.hemisphere.globe is targets.globe:
+        above = parcels < targets.sky_parcels
+        columns, weights = parcels[above], free[:, above]
+        out[s.rows, -1] += free[:, ~above].sum(axis=1)
     else:
-        out[np.ix_(s.rows, parcels[above])] += free[:, above]
-    out[s.rows, -1] += free[:, ~above].sum(axis=1)
+        columns, weights = _spread_over_sky(free, parcels, s.beams.hemisphere, targets)
+    if len(s.rows) == len(out):
+        out[:, columns] += weights
+    else:
+        out[np.ix_(s.rows, columns)] += weights
 
 
 def _add_mirrored_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
@@ -312,8 +310,8 @@ def _add_mirrored_sky(s: Sighting, targets: Targets, out: np.ndarray) -> None:
     _add(out, flat.ravel(), shares.ravel())
 
 
-def _spread_over_sky(free: np.ndarray, parcels: np.ndarray, hemisphere: Hemisphere, targets: Targets) -> np.ndarray:
-    """(r, c) float32: weights ``(r, k)`` of beams, parcels of another globe, shared out among the sky's parcels."""
+def _spread_over_sky(free: np.ndarray, parcels: np.ndarray, hemisphere: Hemisphere, targets: Targets):
+    """Columns ``(c,)`` and weights ``(r, c)`` float32: those ``(r, k)`` of another globe's parcels, among the sky's."""
     lit = np.flatnonzero(free.any(axis=0))
     place = np.full(hemisphere.globe.count, -1)
     place[parcels[lit]] = np.arange(len(lit))
@@ -325,12 +323,11 @@ def _spread_over_sky(free: np.ndarray, parcels: np.ndarray, hemisphere: Hemisphe
     order = np.argsort(column, kind="stable")
     beam, column, share = beam[order], column[order], share[order].astype(np.float32)
     first = np.flatnonzero(np.diff(column, prepend=-1))
-    spread = np.zeros((len(free), targets.columns), np.float32)
-    if len(first):
-        parts = free.astype(np.float32).T.take(lit, axis=0).take(beam, axis=0)
-        parts *= share[:, None]
-        spread[:, column[first]] = np.add.reduceat(parts, first, axis=0).T
-    return spread
+    if not len(first):
+        return column, np.zeros((len(free), 0), np.float32)
+    parts = free.astype(np.float32).T.take(lit, axis=0).take(beam, axis=0)
+    parts *= share[:, None]
+    return column[first], np.add.reduceat(parts, first, axis=0).T
 
 
 def _splat(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) -> None:
@@ -345,14 +342,7 @@ def _splat(s: Sighting, parts: np.ndarray, targets: Targets, out: np.ndarray) ->
 
 def _add(out: np.ndarray, place: np.ndarray, weights: np.ndarray) -> None:
     """Add weights at places of the flattened matrix, some of them to the same."""
-    if _FEW * len(place) > out.size:
-        out += np.bincount(place, weights=weights, minlength=out.size).reshape(out.shape)
-        return
-    order = np.argsort(place, kind="stable")
-    place = place[order]
-    first = np.flatnonzero(np.diff(place, prepend=-1))
-    if len(first):
-        out.reshape(-1)[place[first]] += np.add.reduceat(weights[order], first)
+    np.add.at(out.reshape(-1), place, weights.astype(out.dtype, copy=False))
 
 
 def _columns(directions: np.ndarray, targets: Targets) -> tuple[np.ndarray, np.ndarray]:

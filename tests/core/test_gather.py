@@ -1,4 +1,4 @@
-"""Sums of what beams bring, whether there are few of them or many."""
+"""Sums of what beams bring."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,10 @@ def sky_of(bands, normal, seen):
     targets = gather.Targets.of(None, None, Globe(60))
     hemisphere = Globe(bands).hemisphere(normal)
     free = np.where(seen(hemisphere.directions), hemisphere.weights, 0.0)[None]
-    return gather._spread_over_sky(free, hemisphere.parcels, hemisphere, targets)[0], targets
+    columns, weights = gather._spread_over_sky(free, hemisphere.parcels, hemisphere, targets)
+    found = np.zeros(targets.columns)
+    found[columns] = weights[0]
+    return found, targets
 
 
 @pytest.mark.parametrize("normal", [(0, 0, 1), (0, 1, 0), (0.3, 0.5, 0.2), (0, 0.2, -1)])
