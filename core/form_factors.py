@@ -167,7 +167,7 @@ def gather_nodes(
         else:
             _gather_unhidden(geometry, nodes, members, room, convex, threads, partly)
         done = begun + share
-        light = light.followed(Light.of(geometry, room, members))
+        light = light.followed(Light.of(geometry, room, first, count))
         return light.kinds()
 
     nodes = settled(lattice, geometry.fracture, evaluate, times)
@@ -246,8 +246,8 @@ class Light:
         return cls(np.zeros((0, 4)), np.zeros((0, _GROUPS)))
 
     @classmethod
-    def of(cls, geometry: Geometry, rows: Rows, members: np.ndarray) -> Light:
-        """That of some nodes, all sky and all surfaces being equally bright.
+    def of(cls, geometry: Geometry, rows: Rows, first: int, count: int) -> Light:
+        """That of the nodes from ``first`` on, ``count`` in all, all sky and all surfaces being equally bright.
 
         The sides of the sky blend into each other: between sharp ones light would seem to change from node to node
         where it does not. Nothing here is left to BLAS, whose threads would stay awake and in the way of those that
@@ -263,15 +263,14 @@ class Light:
         mine = targets.patches.of_element >= 0
         sheet[targets.patches.of_element[mine]] = cuts.element_sheet[mine]
         group = sheet * _GROUPS // (2 * len(planes.sheet_surface))
-        order = np.argsort(group, kind="stable")
+        order = np.argsort(group, kind="stable") if (np.diff(group) < 0).any() else slice(None)
         begin = np.flatnonzero(np.diff(group[order], prepend=-1))
-        reflected = np.zeros((len(members), _GROUPS))
-        for first in range(0, len(members), _ROWS):
-            some = rows.form_factors[members[first : first + _ROWS]]
-            sums = np.add.reduceat(some.take(order, axis=1), begin, axis=1) if patches else some
-            reflected[first : first + _ROWS, group[order[begin]]] = sums
-        sky = rows.sky_direct.sums_of_rows(sides) + rows.sky_specular.sums_of_rows(sides)
-        return cls(sky[members], reflected)
+        reflected = np.zeros((count - first, _GROUPS))
+        for row in range(first, count if patches else first, _ROWS):
+            some = rows.form_factors[row : min(row + _ROWS, count)][:, order]
+            reflected[row - first :][: len(some), group[order][begin]] = np.add.reduceat(some, begin, axis=1)
+        sky = rows.sky_direct.sums_of_rows(sides, first) + rows.sky_specular.sums_of_rows(sides, first)
+        return cls(sky[: count - first], reflected)
 
     def followed(self, other: Light) -> Light:
         """That of these nodes and of others after them."""

@@ -407,7 +407,8 @@ def _enter(lattice: Layout, entries: _Entries) -> None:
         line_a, weight_a = _stencils(stretches[0], np.arange(grid.rows), centre[0], places[:, 0], order)
         line_b, weight_b = _stencils(stretches[1], np.arange(grid.columns), centre[1], places[:, 1], order)
         node = numbers[line_a[row][:, :, None], line_b[column][:, None, :]]
-        weight = np.einsum("kna,knb,k->nab", weight_a[:, row], weight_b[:, column], shares)
+        weight_a *= shares[:, None, None]
+        weight = np.matmul(weight_a.transpose(1, 2, 0)[:, None], weight_b.transpose(1, 0, 2)[None])[row, column]
         element = np.broadcast_to((grid.first + 2 * whole + half)[:, None, None], node.shape)
         out.append((element.ravel(), node.ravel(), weight.ravel()))
 

@@ -76,12 +76,14 @@ class SparseRows:
             out[block.rows] = product(block.values, vector.take(block.columns, axis=0), exact)
         return out
 
-    def sums_of_rows(self, weights: np.ndarray) -> np.ndarray:
-        """(m, k) float: the same as ``times(weights)`` for few weights ``(c, k)`` float32, in one thread."""
-        out = np.zeros((self.shape[0], weights.shape[1]))
+    def sums_of_rows(self, weights: np.ndarray, first: int = 0) -> np.ndarray:
+        """(m - first, k) float: ``times`` for few weights ``(c, k)`` float32, of the later rows, without BLAS."""
+        out = np.zeros((self.shape[0] - first, weights.shape[1]))
         for block in self.blocks:
-            for k, weight in enumerate(weights.T.take(block.columns, axis=1)):
-                out[block.rows, k] = np.einsum("rc,c->r", block.values, weight)
+            late = np.flatnonzero(block.rows >= first)
+            if len(late):
+                sums = [np.einsum("rc,c->r", block.values, w) for w in weights.T.take(block.columns, axis=1)]
+                out[block.rows[late] - first] = np.stack(sums, axis=1)[late]
         return out
 
     def sums(self) -> np.ndarray:

@@ -45,8 +45,7 @@ def rows_of(transfer):
 
 
 def kinds_of_light(transfer):
-    every = np.arange(len(transfer.unlit))
-    return Light.of(transfer.geometry, rows_of(transfer), every).kinds()
+    return Light.of(transfer.geometry, rows_of(transfer), 0, len(transfer.unlit)).kinds()
 
 
 def weights_of(nodes):

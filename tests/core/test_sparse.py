@@ -57,7 +57,9 @@ def test_products_without_what_is_nought(matrix, whole, exact):
         vector = np.random.default_rng(5).uniform(0, 1e4, shape)
         found = sparse.times(vector, exact)
         np.testing.assert_allclose(found, whole.astype(float) @ vector, rtol=1e-12 if exact else 1e-6)
-    np.testing.assert_allclose(sparse.sums_of_rows(vector.astype(np.float32)), whole @ vector, rtol=1e-5)
+    sums = whole @ vector
+    np.testing.assert_allclose(sparse.sums_of_rows(vector.astype(np.float32)), sums, rtol=1e-5)
+    np.testing.assert_allclose(sparse.sums_of_rows(vector.astype(np.float32), 100), sums[100:], rtol=1e-5)
 
 
 def test_the_order_of_entries_changes_nothing(matrix):
