@@ -201,6 +201,16 @@ class Shapes:
         """Some of the shapes."""
         return Shapes(self.corners.take(index, axis=2), self.counts.take(index), self.moments.take(index, axis=0))
 
+    def followed(self, others: Shapes) -> Shapes:
+        """These, and others after them."""
+        width = max(self.corners.shape[1], others.corners.shape[1])
+        corners = [polygons.widen(shapes.corners.T, width).T for shapes in (self, others)]
+        return Shapes(
+            np.concatenate(corners, axis=2),
+            np.concatenate([self.counts, others.counts]),
+            np.concatenate([self.moments, others.moments]),
+        )
+
     def replaced(self, index, others: Shapes) -> Shapes:
         """With others in some places."""
         width = max(self.corners.shape[1], others.corners.shape[1])

@@ -100,6 +100,13 @@ class Cuts:
             mine,
         )
 
+    def twice(self, groups: int) -> Cuts:
+        """All ``groups``, and after them the same once more."""
+        parts = {f.name: getattr(self, f.name) for f in fields(self)}
+        both = {name: part if part is None else np.concatenate([part, part]) for name, part in parts.items()}
+        both["group"] = np.concatenate([self.group, groups + self.group])
+        return Cuts(**both)
+
 
 @dataclass(frozen=True, eq=False)
 class Limits:
@@ -169,23 +176,32 @@ def settle(cuts: Cuts, beams: Beams, limits: Limits, fine: np.ndarray) -> Shares
     Shares
     """
     half = beams.hemisphere
-    shares = _Tally(beams, cuts, *_visible(cuts, beams, limits, half.shapes)).shares()
+    beam = _beams_of(cuts, len(fine))
+    shares = _Tally(beams, cuts, *_visible(cuts, beams, limits, half.shapes, beams.columns[beam])).shares()
     small = np.flatnonzero(shares.settled & fine & (shares.left > 0) & (shares.left < _SMALL))
     if len(small):  # an opening that may be smaller than what chords make of arcs
         mine, some = cuts.of(small)
-        visible, whole, settled = _visible(mine, beams, limits.take(small), half.fine_shapes[0])
-        off, whole_off, _ = _visible(mine, beams, limits.take(small), half.fine_shapes[1])
-        again = _Tally(beams, mine, visible - off, whole - whole_off, settled).shares()
+        around, off = (shapes.take(beams.columns[beam[small]]) for shapes in half.fine_shapes)
+        both = mine.twice(len(small)), beams, limits.take(np.tile(small, 2)), around.followed(off)
+        visible, whole, settled = (np.split(found, 2) for found in _visible(*both, np.arange(2 * len(small))))
+        again = _Tally(beams, mine, visible[0] - visible[1], whole[0] - whole[1], settled[0]).shares()
         shares.share[some], shares.towards[some] = again.share, again.towards
         shares.left[small], shares.left_towards[small] = again.left, again.left_towards
         shares.settled[small] = again.settled
     return shares
 
 
-def _visible(cuts: Cuts, beams: Beams, limits: Limits, shapes: Shapes):
+def _beams_of(cuts: Cuts, groups: int) -> np.ndarray:
+    """(g,) int: the beam of each group."""
+    beam = np.zeros(groups, np.int64)
+    beam[cuts.group] = cuts.beam
+    return beam
+
+
+def _visible(cuts: Cuts, beams: Beams, limits: Limits, shapes: Shapes, shape_of_group: np.ndarray):
     """Moments of what shows of each obstacle (n, 3) and of the beams (g, 3); which are settled (g,)."""
     groups = len(limits.far_height)
-    region = _Regions(cuts, beams, shapes, groups)
+    region = _Regions(cuts, beams, shapes, shape_of_group)
     every = np.arange(len(cuts.beam))
     whole = region.whole()
     alone = region.moments(every[:, None])
@@ -235,8 +251,7 @@ class _Tally:
     def shares(self) -> Shares:
         """Shares of the beams' cosine-weighted solid angle."""
         group, groups = self.cuts.group, len(self.whole)
-        beam = np.empty(groups, np.int64)
-        beam[group] = self.cuts.beam
+        beam = _beams_of(self.cuts, groups)
         cosines, frames = self.beams.hemisphere.cosines[self.beams.columns[beam]], self.beams.frames
         total = dots(self.whole, cosines)
         total = np.where(self.settled & (total > 0), total, 1.0)
@@ -262,17 +277,17 @@ def _towards(frames, moments) -> np.ndarray:
 class _Regions:
     """Parts of beams that are common to some obstacles."""
 
-    def __init__(self, cuts: Cuts, beams: Beams, shapes: Shapes, groups: int):
+    def __init__(self, cuts: Cuts, beams: Beams, shapes: Shapes, shape_of_group: np.ndarray):
         self.cuts, self.frames = cuts, beams.frames
         frames = self.frames.take(np.repeat(cuts.beam, cuts.count), axis=0)
         lines = np.stack([dots(frames[:, k], cuts.edge) for k in range(3)])
         self.lines = np.concatenate([lines, [[1.0], [0.0], [0.0]]], axis=1)  # the last cuts nothing
         self.count, self.first = cuts.count, np.cumsum(cuts.count) - cuts.count
-        beam = np.zeros(groups, np.int64)
-        beam[cuts.group] = cuts.beam
-        self.shapes, self.shape_of_group = shapes, beams.columns[beam]
+        self.shapes, self.shape_of_group = shapes, shape_of_group
         if cuts.window_count is not None and cuts.window_edge is not None:
-            self.shapes = _within_windows(shapes.take(self.shape_of_group), cuts, self.frames.take(beam, axis=0))
+            groups = len(shape_of_group)
+            frames = self.frames.take(_beams_of(cuts, groups), axis=0)
+            self.shapes = _within_windows(shapes.take(shape_of_group), cuts, frames)
             self.shape_of_group = np.arange(groups)
         self.shape = self.shape_of_group[cuts.group]
 
