@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 from .outlines import Outlines
 from .projection import HalfSpace, reflect, reflect_points
 
@@ -107,7 +107,7 @@ class Places:
     def cut(self, shapes: np.ndarray, place: np.ndarray) -> np.ndarray:
         """Parts of polygons ``(m, v, 3)`` within the limits of places ``(m,)``."""
         for normals, offsets in self.limits:
-            shapes = polygons.clip(shapes, normals[place], offsets[place])
+            shapes = clipping.clip(shapes, normals[place], offsets[place])
         return shapes
 
     def above(self, shapes: np.ndarray, tolerance: float) -> np.ndarray:

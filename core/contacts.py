@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 from .fracture import Fracture
 from .layout import Layout
 from .planes import Planes
@@ -107,7 +107,7 @@ def _parted(owner, shapes, some, normal, offset: float, least) -> tuple[np.ndarr
 
     Parts of less than ``least`` of their owner are left out.
     """
-    halves = [polygons.clip(shapes[some], sign * normal, sign * offset) for sign in (1.0, -1.0)]
+    halves = [clipping.clip(shapes[some], sign * normal, sign * offset) for sign in (1.0, -1.0)]
     shapes = polygons.joined([shapes[~some], *halves])
     owner = np.concatenate([owner[~some], owner[some], owner[some]])
     kept = polygons.areas(shapes) > least[owner]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import polygons
+from . import polygons, rings
 from .arrays import dots
 from .geometry import Geometry
 from .nodes import Nodes
@@ -172,7 +172,7 @@ def borders(triangles: np.ndarray, group: np.ndarray, size: float) -> tuple[np.n
     begin, end : (k, 3) float
     """
     corners = triangles.reshape(-1, 3)
-    first, vertex = polygons.welded(corners, 1e-10 * size)
+    first, vertex = rings.welded(corners, 1e-10 * size)
     places, one = corners[first], vertex.reshape(-1, 3)
     two, owner = np.roll(one, -1, axis=1).ravel(), np.repeat(group, 3)
     one = one.ravel()

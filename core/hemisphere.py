@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 from .arrays import dots
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ class Hemisphere:
         height = self.cosines[index, 0]
         low = np.flatnonzero((np.einsum("kvc,kc->kv", spatial, level) < -height[:, None]).any(axis=1))
         if len(low):
-            above = polygons.clip(spatial[low], level[low], -height[low])
+            above = clipping.clip(spatial[low], level[low], -height[low])
             width = max(spatial.shape[1], above.shape[1])
             spatial = polygons.widen(spatial, width)
             spatial[low] = polygons.widen(above, width)
@@ -195,7 +195,7 @@ class Shapes:
     def of(cls, corners, counts) -> Shapes:
         """Shapes from corners ``(k, v, 2)``."""
         corners = np.ascontiguousarray(np.moveaxis(corners, 0, 2).swapaxes(0, 1))
-        return cls(corners, counts, polygons.convex_moments(corners, np.zeros((3, 0, len(counts)))).T)
+        return cls(corners, counts, clipping.convex_moments(corners, np.zeros((3, 0, len(counts)))).T)
 
     def take(self, index) -> Shapes:
         """Some of the shapes."""

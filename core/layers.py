@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 
 _NOTHING = 1e-10
 """Pieces smaller than this share of the beam are none."""
@@ -77,7 +77,7 @@ def peeled(beams, group, lines, line_of, depth) -> tuple[np.ndarray, np.ndarray]
         asked = np.flatnonzero(obstacle[owner] >= 0)
         which = obstacle[owner[asked]]
         bounds = lines[:, line_of[which]].transpose(0, 2, 1)  # (3, w, n)
-        moments = polygons.convex_moments(pieces[asked, :, :2].transpose(2, 1, 0), bounds)
+        moments = clipping.convex_moments(pieces[asked, :, :2].transpose(2, 1, 0), bounds)
         for k in range(3):
             visible[:, k] += np.bincount(which, weights=moments[k], minlength=len(visible))
         hidden = moments[0] > least[owner[asked]]
@@ -94,9 +94,9 @@ def _less(pieces, owner, some, bounds, least) -> tuple[np.ndarray, np.ndarray]:
     inside, mine = pieces[some], owner[some]
     for a, b, c in bounds.transpose(1, 0, 2):
         normal = np.stack([b, c, np.zeros(len(b))], axis=1)
-        beyond = polygons.clip(inside, -normal, a)
+        beyond = clipping.clip(inside, -normal, a)
         kept = (polygons.areas(beyond) > least[mine]) & normal.any(axis=1)
         rest.append(beyond[kept])
         whose.append(mine[kept])
-        inside = polygons.clip(inside, normal, -a)
+        inside = clipping.clip(inside, normal, -a)
     return polygons.joined(rest), np.concatenate(whose)

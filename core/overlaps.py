@@ -7,11 +7,11 @@ shows: each common part counts, by turns positive and negative, for its farthest
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from . import layers, polygons
+from . import clipping, layers, polygons
 from .arrays import dots, runs
 from .hemisphere import Shapes
 from .projection import Beams
@@ -103,9 +103,8 @@ class Cuts:
     def twice(self, groups: int) -> Cuts:
         """All ``groups``, and after them the same once more."""
         parts = {f.name: getattr(self, f.name) for f in fields(self)}
-        both = {name: part if part is None else np.concatenate([part, part]) for name, part in parts.items()}
-        both["group"] = np.concatenate([self.group, groups + self.group])
-        return Cuts(**both)
+        both = {name: np.concatenate([part, part]) for name, part in parts.items() if part is not None}
+        return replace(self, **{**both, "group": np.concatenate([self.group, groups + self.group])})
 
 
 @dataclass(frozen=True, eq=False)
@@ -311,7 +310,7 @@ class _Regions:
                 if end - begin >= _BATCH or (end == len(mine) and end > begin):
                     now = mine[begin:end]
                     bounds = self.lines.take(self._lines_of(members[now], lines[now]).T, axis=1)
-                    out[now] = polygons.convex_moments(corners[:, :sides].take(shape[now], axis=2), bounds).T
+                    out[now] = clipping.convex_moments(corners[:, :sides].take(shape[now], axis=2), bounds).T
                     begin = end
         return out
 
@@ -434,7 +433,7 @@ def _within_windows(shapes: Shapes, cuts: Cuts, frames) -> Shapes:
         mine = np.flatnonzero(count[some] > k)
         line = edge[first[some[mine]] + k]
         a, b, c = (dots(frames[some[mine], axis], line) for axis in range(3))
-        less = polygons.clip(corners[mine], np.stack([b, c, np.zeros(len(b))], axis=1), -a)
+        less = clipping.clip(corners[mine], np.stack([b, c, np.zeros(len(b))], axis=1), -a)
         corners = polygons.widen(corners, max(corners.shape[1], less.shape[1]))
         corners[mine] = polygons.widen(less, corners.shape[1])
     padded = (corners[:, ::-1] == corners[:, -1:]).all(axis=2).cumprod(axis=1).sum(axis=1)

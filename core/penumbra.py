@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import disc, polygons
+from . import clipping, disc, polygons
 from .materials import Material
 from .outlines import Outlines
 from .projection import HalfSpace
@@ -155,7 +155,7 @@ def trace_disc(
         blur of their edges is a redistribution (`Sunlight.blur`).
     """
     axes, level = sun.disc_axes, sun.disc_horizon
-    part, rule = polygons.clip(disc.SQUARE[None], np.array([-level, 0.0, 1.0])), disc.quadrature(level)
+    part, rule = clipping.clip(disc.SQUARE[None], np.array([-level, 0.0, 1.0])), disc.quadrature(level)
     targets = list(_targets(outlines, elements, element_sheet, outline_sheet))
     values, truncated = np.zeros((2, len(elements))), 0.0
     none = Screens(np.zeros((0, 3, 3)), np.zeros(0, bool), np.zeros(0), axes, outlines.tolerance)
@@ -226,7 +226,7 @@ def _targets(outlines: Outlines, elements, element_sheet, outline_sheet) -> Iter
 
 def _facing(part, normal, axes) -> np.ndarray:
     """(1, v, 3) float: what of the disc is before a plane."""
-    return polygons.clip(part, axes @ normal)
+    return clipping.clip(part, axes @ normal)
 
 
 def _ahead(outlines: Outlines, beam: DiscBeam) -> Screens:
@@ -234,7 +234,7 @@ def _ahead(outlines: Outlines, beam: DiscBeam) -> Screens:
     vertices, present = outlines.vertices, np.arange(len(outlines.vertices))
     if beam.ahead is not None:
         present = np.flatnonzero((vertices @ beam.ahead.normal - beam.ahead.offset > outlines.tolerance).any(axis=1))
-        vertices = polygons.clip(vertices[present], beam.ahead.normal, beam.ahead.offset)
+        vertices = clipping.clip(vertices[present], beam.ahead.normal, beam.ahead.offset)
     cosine = outlines.normals[present] @ beam.axes[0]
     through = np.zeros(len(present))
     for k, o in enumerate(present):
@@ -260,7 +260,7 @@ def _before(near: Screens, beam: DiscBeam, plane: HalfSpace, vertices) -> Screen
     above = np.flatnonzero((height > near.tolerance).any(axis=1) & ~near.relation(hull)[0][:, 0])
     if not len(above):
         return screens
-    cut = polygons.clip(near.vertices[above], plane.normal, plane.offset)
+    cut = clipping.clip(near.vertices[above], plane.normal, plane.offset)
     kept = wide(cut, near.tolerance)
     between = replace(near.take(above[kept]), vertices=cut[kept])
     if _shut(between, between.relation(hull)[1][:, 0]):
@@ -277,7 +277,7 @@ def _thrown(beam: DiscBeam, screens: Screens, plane: HalfSpace, outline, share: 
     tolerance = screens.tolerance
     window = outline[None]
     if beam.ahead is not None:
-        window = polygons.clip(window, beam.ahead.normal, beam.ahead.offset)
+        window = clipping.clip(window, beam.ahead.normal, beam.ahead.offset)
     if not wide(window, tolerance)[0]:
         return None
     outside, inside, _ = (found[:, 0] for found in screens.relation(window))
@@ -441,7 +441,7 @@ def _at_points(beam: DiscBeam, near: Screens, part, points, normals) -> np.ndarr
     lit = factor > 0
     rows, factor, cut = rows[lit], factor[lit], ~(outside | inside)[:, lit]
     if len(rows):
-        shapes = polygons.clip(np.broadcast_to(part, (len(rows), *part.shape[1:])), lines[rows])
+        shapes = clipping.clip(np.broadcast_to(part, (len(rows), *part.shape[1:])), lines[rows])
         seen = _seen_disc(screens, shapes, points[rows], cut)
         out[rows] = factor * np.einsum("nk,nk->n", seen, lines[rows])
     return out

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 from .outlines import Outlines
 
 _EVEN = 0.4
@@ -138,7 +138,7 @@ class SeenShapes:
         shape = self.shape
         part = shape.take(cut, axis=2).transpose(2, 1, 0)
         for plane in self.windows.planes.take(self.row[cut], axis=2).transpose(1, 2, 0):
-            part = polygons.clip(part, plane)
+            part = clipping.clip(part, plane)
         some = has_area(part)
         index = np.concatenate([whole, cut[some]])
         parts = polygons.joined([shape.take(whole, axis=2).transpose(2, 1, 0), part[some]])
@@ -178,10 +178,10 @@ def past_blocker(outlines: Outlines, polygon, outline: int, seen: Shapes, planes
         if not len(row):
             break
         wall, edge = planes[row, e], edges[row, e]
-        outside = polygons.clip(shape, -wall)
+        outside = clipping.clip(shape, -wall)
         some = np.flatnonzero(edge & has_area(outside))
         kept.append(Shapes(row[some], which[some], outside[some].transpose(2, 1, 0), weight[some]))
-        inside = polygons.clip(shape, wall)
+        inside = clipping.clip(shape, wall)
         inside = inside if edge.all() else _choose(edge, inside, shape)
         some = np.flatnonzero(has_area(inside))
         row, which, shape, weight = row[some], which[some], inside[some], weight[some]
@@ -250,7 +250,7 @@ def _halved(shapes: np.ndarray) -> np.ndarray:
     farthest = np.argmax(np.einsum("mvc,mvc->mv", reach, reach), axis=1)
     along = reach[np.arange(len(shapes)), farthest]
     at = np.einsum("mc,mc->m", along, centre)
-    return polygons.joined([polygons.clip(shapes, along, at), polygons.clip(shapes, -along, -at)])
+    return polygons.joined([clipping.clip(shapes, along, at), clipping.clip(shapes, -along, -at)])
 
 
 def joined(parts: list[Shapes]) -> Shapes:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import polygons
+from . import polygons, rings
 from .scene import Scene
 
 _SAME_NORMAL = 1e-7
@@ -108,7 +108,7 @@ def find_planes(scene: Scene) -> Planes:
             sheet_normal.append(normal[representative])
     padded, given_counts = polygons.pad([p[:c] for p, c in given])
     axes = _sheet_axes(np.array(sheet_normal), polygons.pad(outlines)[0], np.array(outline_of))
-    parts = [polygons.of_few_corners(outline, _MOST_CORNERS) for outline in outlines]
+    parts = [rings.of_few_corners(outline, _MOST_CORNERS) for outline in outlines]
     outline_sheet = np.repeat(outline_of, [len(some) for some in parts])
     return Planes(
         centre=centre,
@@ -176,7 +176,7 @@ def join_outline(loops: list[np.ndarray], normal: np.ndarray) -> list[np.ndarray
     origin = points.mean(axis=0)
     flat = (points - origin) @ basis.T
     extent = np.ptp(flat, axis=0).max()
-    first, ids = polygons.welded(flat, 1e-7 * extent)
+    first, ids = rings.welded(flat, 1e-7 * extent)
     starts = np.cumsum([0] + [len(p) for p in loops])
     nxt: dict[int, int] = {}
     edges = set()
@@ -201,11 +201,11 @@ def join_outline(loops: list[np.ndarray], normal: np.ndarray) -> list[np.ndarray
             if here not in nxt:
                 return loops
             here = nxt.pop(here)
-        outer.append(polygons.simplify(flat[first[ring]], 1e-9 * extent))
+        outer.append(rings.simplify(flat[first[ring]], 1e-9 * extent))
     signed = [0.5 * polygons.newell_normal(np.c_[ring, np.zeros(len(ring))])[2] for ring in outer]
     if any(area <= 0 for area in signed):
         return loops  # holes: the given faces describe them already
-    parts = [part for ring in outer for part in polygons.convex_parts(ring, 1e-9 * extent)]
+    parts = [part for ring in outer for part in rings.convex_parts(ring, 1e-9 * extent)]
     if abs(sum(signed) - sum(polygons.areas(p) for p in loops)) > 1e-9 * extent**2 or len(parts) >= len(loops):
         return loops
     if abs(sum(polygons.areas(np.c_[p, np.zeros(len(p))]) for p in parts) - sum(signed)) > 1e-9 * extent**2:

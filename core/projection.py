@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 from .globe import Hemisphere
 
 UNTURNED = np.eye(3)
@@ -184,7 +184,7 @@ def obstacles_within(outlines, normals, offsets, half_spaces: list[HalfSpace], t
         index, vertices, height = index[keep], vertices[keep], height[keep]
         below = (height < -tolerance).any(axis=1)
         if below.any():
-            cut = polygons.clip(vertices[below], half.normal, half.offset)
+            cut = clipping.clip(vertices[below], half.normal, half.offset)
             width = max(cut.shape[1], vertices.shape[1])
             vertices = polygons.widen(vertices, width)
             vertices[below] = polygons.widen(cut, width)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import polygons
+from . import polygons, rings
 from .errors import SceneError
 from .materials import Material
 
@@ -144,7 +144,7 @@ def _polygon_pieces(name: str, points: np.ndarray):
         off = np.abs(loop3 @ unit).max()
         basis = polygons.plane_basis(unit)
         loop = loop3 @ basis.T
-        if polygons.crosses_itself(loop):
+        if rings.crosses_itself(loop):
             raise SceneError(
                 f"Surface '{name}': the polygon's edges cross each other; split it or reorder its vertices"
             )
@@ -166,7 +166,7 @@ def _polygon_pieces(name: str, points: np.ndarray):
 
 def _covers(pieces: np.ndarray, twice_area: float) -> bool:
     """Whether pieces have the area of the loop that they were cut from, which they have not where it meets itself."""
-    return abs(2 * polygons.areas(pieces).sum() - twice_area) <= polygons.SAME_AREA * twice_area
+    return abs(2 * polygons.areas(pieces).sum() - twice_area) <= rings.SAME_AREA * twice_area
 
 
 def _flat_pieces(points: np.ndarray, unit: np.ndarray):
@@ -174,7 +174,7 @@ def _flat_pieces(points: np.ndarray, unit: np.ndarray):
     basis = polygons.plane_basis(unit)
     tolerance = 1e-9 * np.ptp(points, axis=0).max()
     origin = points.mean(axis=0)
-    parts = polygons.convex_parts((points - origin) @ basis.T, tolerance)
+    parts = rings.convex_parts((points - origin) @ basis.T, tolerance)
     lifted = [part @ basis + origin for part in parts]
     for part in lifted:
         for i, corner in enumerate(part):
@@ -182,7 +182,7 @@ def _flat_pieces(points: np.ndarray, unit: np.ndarray):
             nearest = int(np.argmin(distance))
             if distance[nearest] <= 1e-6 * np.ptp(points, axis=0).max():
                 part[i] = points[nearest]
-    cleaned = [polygons.without_flat_corners(part[None])[0][1][0] for part in lifted if len(part) > 2]
+    cleaned = [rings.without_flat_corners(part[None])[0][1][0] for part in lifted if len(part) > 2]
     pieces, counts = polygons.pad(cleaned)
     return pieces, counts, np.zeros(len(cleaned), np.int64)
 
@@ -219,7 +219,7 @@ def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
         convex &= ~(back & (np.abs(turn) <= 1e-9 * size[:, None] ** 2)).any(axis=1)
         # between corners that lie together a bend inwards would not show
         convex &= (np.linalg.norm(edge, axis=2) > 1e-8 * size[:, None]).all(axis=1)
-        for some, loops in polygons.without_flat_corners(corners[convex]):
+        for some, loops in rings.without_flat_corners(corners[convex]):
             pieces.append(loops)
             counts.append(np.full(len(some), loops.shape[1]))
             source.append(rows[convex][some])
@@ -227,11 +227,11 @@ def _mesh_pieces(name: str, points: np.ndarray, faces, two_sided: bool):
         each = (rows, corners, unit, flat, twice_area[sound])
         for row, polygon, normal, flat_too, around in zip(*(values[~convex] for values in each), strict=True):
             loop = (polygon - polygon[0]) @ polygons.plane_basis(normal).T
-            if polygons.crosses_itself(loop):
+            if rings.crosses_itself(loop):
                 raise SceneError(
                     f"Surface '{name}': the edges of face {row} cross each other; split it or reorder its vertices"
                 )
-            triangles = polygon[polygons.triangulate(loop)]
+            triangles = polygon[rings.triangulate(loop)]
             if flat_too and not _covers(triangles, around):
                 raise SceneError(
                     f"Surface '{name}': face {row} crosses itself at a corner or covers a part twice; split it or "

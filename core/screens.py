@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 from .projection import reflect, reflect_points
 
 _ROUNDING = 1e-12
@@ -190,8 +190,8 @@ class Pieces:
         if not split.any():
             return self.take(inside), self.take(outside)
         both, normals, offsets = self.take(split), normals[split], offsets[split]
-        inner = replace(both, shapes=polygons.clip(both.shapes, normals, offsets))
-        outer = replace(both, shapes=polygons.clip(both.shapes, -normals, -offsets))
+        inner = replace(both, shapes=clipping.clip(both.shapes, normals, offsets))
+        outer = replace(both, shapes=clipping.clip(both.shapes, -normals, -offsets))
         return Pieces.joined([self.take(inside), inner]), Pieces.joined([self.take(outside), outer])
 
     def behind(self, screens: Screens, k: int, normals, offsets) -> Pieces:

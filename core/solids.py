@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import polygons
+from . import polygons, rings
 from .planes import Planes
 
 _SAME_PLACE = 1e-9
@@ -120,7 +120,7 @@ def _bodies(pieces: np.ndarray, counts: np.ndarray, tight: np.ndarray, same: flo
     """(g,) int: closed surface that each piece is a part of; -1 where it is of none."""
     width = pieces.shape[1]
     real = np.arange(width) < counts[:, None]
-    corner = polygons.welded(pieces.reshape(-1, 3), same)[1].reshape(-1, width)
+    corner = rings.welded(pieces.reshape(-1, 3), same)[1].reshape(-1, width)
     after = np.where(np.arange(width) == counts[:, None] - 1, corner[:, :1], np.roll(corner, -1, axis=1))
     piece = np.repeat(np.arange(len(pieces)), width).reshape(-1, width)
     one, two, owner = corner[real], after[real], piece[real]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import polygons, radiosity
+from . import polygons, radiosity, rings
 from .arrays import dots, product
 from .bright import Bright, Source
 from .daylight import Daylight
@@ -299,7 +299,7 @@ def bright_few(geometry: Geometry, sunlight: Sunlight) -> tuple[list[Source], li
             alike.setdefault((patch.outline, patch.front, patch.illuminance), []).append(polygon)
     for (outline, _, illuminance), pieces in alike.items():
         exitance = outlines.materials[outline].diffuse_reflectance * illuminance
-        whole = (polygon for polygon in polygons.merged(pieces) if polygons.newell_normal(polygon).any())
+        whole = (polygon for polygon in rings.merged(pieces) if polygons.newell_normal(polygon).any())
         sunny += [Source(polygon, exitance) for polygon in whole]
     return emitters, sunny
 

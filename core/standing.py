@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 from .arrays import runs
 from .blockers import Blockers, Places, frame
 from .outlines import Outlines
@@ -211,7 +211,7 @@ class Shining:
         above = (outlines.vertices @ normals.T - offsets > tolerance).any(axis=1).T
         number, outline = np.nonzero(above & ((low < -tolerance) | (high > tolerance)))
         blockers = Blockers.of(outlines, outline, number)
-        parts = polygons.clip(blockers.vertices, normals[number], offsets[number])
+        parts = clipping.clip(blockers.vertices, normals[number], offsets[number])
         wide = polygons.areas(parts) > tolerance**2
         return cls(
             shining,

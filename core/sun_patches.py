@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 
 _ROUNDING = 1e-11
 
@@ -181,7 +181,7 @@ def _lit_parts(triangles, some: list[np.ndarray], shapes: list[np.ndarray]):
     of = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
     pieces = triangles[np.concatenate([mine[part] for mine, part in zip(some, parts, strict=True)])]
     for edge in range(inward.shape[1]):
-        pieces = polygons.clip(pieces, inward[of, edge], offset[of, edge])
+        pieces = clipping.clip(pieces, inward[of, edge], offset[of, edge])
     return insides, parts, pieces
 
 

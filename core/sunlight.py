@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import polygons
+from . import clipping, polygons
 from .outlines import Outlines
 from .pieces import tightened
 from .projection import reflect
@@ -163,7 +163,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
     if beam.mouth is not None:
         start = float(beam.ahead @ beam.mouth[0])
         present = np.flatnonzero((vertices @ beam.ahead - start > tolerance).any(axis=1))
-        vertices = polygons.clip(vertices[present], beam.ahead, start)
+        vertices = clipping.clip(vertices[present], beam.ahead, start)
     cosine = outlines.normals[present] @ beam.travel
     side = np.sign(cosine)
     facing = np.abs(cosine) > 1e-12
@@ -172,7 +172,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
     regions = vertices[lit]
     if beam.mouth is not None:
         for normal, offset in zip(*_mouth_prism(beam.mouth, beam.travel), strict=True):
-            regions = polygons.clip(regions, normal, offset)
+            regions = clipping.clip(regions, normal, offset)
         left = wide(regions, tolerance)
         lit, regions = lit[left], regions[left]
     upstream = -outlines.normals[present[lit]] * side[lit, None]
@@ -192,7 +192,7 @@ def land(outlines: Outlines, beam: Beam) -> list[SunPatch]:
                 nearer, prism_of = vertices[b], (walls[0][b], walls[1][b])
                 known = pieces[0] is region and low[j, b] >= 0
                 if low[j, b] < 0:
-                    (nearer,) = polygons.clip(nearer[None], upstream[first + j], start[first + j])
+                    (nearer,) = clipping.clip(nearer[None], upstream[first + j], start[first + j])
                     normals, offsets = prism(nearer[None], beam.travel, cosine[b : b + 1])
                     prism_of = normals[0], offsets[0]
                 asked = None if known else nearer  # that the whole region is met is known
@@ -244,7 +244,7 @@ def _shadow(outlines: Outlines, pieces, walls, blocker: np.ndarray | None, side:
     for edge in np.flatnonzero((heights[meets] < 0).any(axis=(0, 1))).tolist():
         normal, offset = normals[edge], offsets[edge]
         if (inside @ normal - offset).min() < 0:
-            outside, inside = polygons.parted(inside, normal, offset)
+            outside, inside = clipping.parted(inside, normal, offset)
             left.append((outside, factors))
     material = outlines.materials[outline]
     if material.is_transparent:

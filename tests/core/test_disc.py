@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from luzespecular import disc, polygons
+from luzespecular import clipping, disc
 
 STEP = (np.arange(800) + 0.5) / 400 - 1
 U, V = (x.ravel() for x in np.meshgrid(STEP, STEP))
@@ -20,7 +20,7 @@ lines = st.tuples(st.floats(-1.2, 1.2), st.floats(0, 2 * math.pi)).map(
 
 @given(lines, lines)
 def test_moments_of_polygons(first, second):
-    shape = polygons.clip(polygons.clip(disc.SQUARE[None], first), second)
+    shape = clipping.clip(clipping.clip(disc.SQUARE[None], first), second)
     inside = (first @ GRID >= 0) & (second @ GRID >= 0)
     np.testing.assert_allclose(disc.moments(shape)[0], GRID[:, inside].sum(axis=1) / GRID.shape[1], atol=3e-3)
 
@@ -30,7 +30,7 @@ def test_moments_of_segments(level, turn):
     """A chord at any angle: the closed form, turned."""
     across = np.array([math.cos(turn), math.sin(turn)])
     share, _, height = disc.moments_above(level)
-    shape = polygons.clip(disc.SQUARE[None], np.array([-level, *across]))
+    shape = clipping.clip(disc.SQUARE[None], np.array([-level, *across]))
     np.testing.assert_allclose(disc.moments(shape)[0], [share, *(height * across)], atol=1e-12)
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import luzespecular as luz
-from luzespecular import flaws, polygons
+from luzespecular import clipping, flaws, polygons
 
 GREY = luz.Material(diffuse_reflectance=0.5)
 FLOOR = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
@@ -88,7 +88,7 @@ def test_overlap_agrees_with_clipping(m, n, turn, distance, towards):
     clipped = two[None]
     for a, b in zip(one, np.roll(one, -1, axis=0), strict=True):
         inward = np.array([-(b - a)[1], (b - a)[0], 0.0])
-        clipped = polygons.clip(clipped, inward / np.linalg.norm(inward), a @ inward / np.linalg.norm(inward))
+        clipped = clipping.clip(clipped, inward / np.linalg.norm(inward), a @ inward / np.linalg.norm(inward))
     area = float(polygons.areas(clipped).sum()) if clipped.size else 0.0
     outlines, _ = polygons.pad([one, two])
     found = flaws.overlapping_outlines(outlines, np.tile([0.0, 0, 1], (2, 1)), np.zeros(2), 1e-6)

@@ -8,7 +8,7 @@ import pytest
 from builders import BLACK, box_polygons
 
 import luzespecular as luz
-from luzespecular import polygons
+from luzespecular import polygons, rings
 from luzespecular.errors import SceneError
 from luzespecular.scene import Scene
 
@@ -230,7 +230,7 @@ def test_corners_that_repeat_or_lie_on_edges_count_for_nothing(polygon, area, me
         faces=[range(len(polygon))] if mesh else None,
     )
     for piece, count in zip(surface.pieces, surface.counts, strict=True):
-        assert polygons.is_convex(piece[:count, :2], 1e-9 * 4)
+        assert rings.is_convex(piece[:count, :2], 1e-9 * 4)
         assert polygons.areas(piece) > 1e-9
     assert polygons.areas(surface.pieces).sum() == pytest.approx(area, rel=1e-9)
     light = luz.Daylight(sky=luz.UniformSky(1000.0))

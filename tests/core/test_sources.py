@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import luzespecular as luz
-from luzespecular import polygons, sources
+from luzespecular import clipping, sources
 from luzespecular.bright import Source, even_illuminance
 from luzespecular.sources import gather_sources
 from luzespecular.tracing import ChainLimits
@@ -44,7 +44,7 @@ def lux_at(polygons_, materials, points, normals=UP, initial=True):
 
 def factor(polygon, point, normal=UP):
     """Form factor of the part above the point's horizon; Lambert's formula is tested with the polygons."""
-    above = polygons.clip((np.asarray(polygon, float) - point)[None], normal)
+    above = clipping.clip((np.asarray(polygon, float) - point)[None], normal)
     return float(lambert_form_factor(above, normal)[0])
 
 

@@ -6,7 +6,7 @@ from builders import lambert_form_factor
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from luzespecular import polygons, unhidden
+from luzespecular import clipping, polygons, unhidden
 from luzespecular.blockers import Blockers
 from luzespecular.standing import Standing
 
@@ -64,8 +64,8 @@ def cut_away(screens, shape=LAMP, eyes=EYES, normal=UP):
                 inside = piece[None]
                 for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
                     wall = np.sign(around) * np.cross(a, b)
-                    left.append(polygons.clip(inside, -wall)[0])
-                    inside = polygons.clip(inside, wall)
+                    left.append(clipping.clip(inside, -wall)[0])
+                    inside = clipping.clip(inside, wall)
             pieces = left
         found.append(sum(float(lambert_form_factor(piece[None], normal)[0]) for piece in pieces))
     return np.array(found)

@@ -49,11 +49,11 @@ def image(polygon, normal, offset):
 
 def by_lamps(lamps, point, normal) -> float:
     """Lux of luminous polygons that nothing hides, by Lambert's formula (with the part below the horizon cut off)."""
-    from luzespecular import polygons
+    from luzespecular import clipping
 
     total = 0.0
     for lamp in lamps:
-        shown = polygons.clip((np.asarray(lamp, float) - point)[None], np.asarray(normal, float))
+        shown = clipping.clip((np.asarray(lamp, float) - point)[None], np.asarray(normal, float))
         total += 1000.0 * float(lambert_form_factor(shown, np.asarray(normal, float))[0])
     return total
 
