@@ -16,12 +16,9 @@ import numpy as np
 from . import polygons
 from .clusters import MANY_FACETS, clustered
 from .fracture import Fracture
-from .interpolation import lagrange
 from .layout import Layout
+from .stencils import left_out, lines_along, stencils
 from .weights import Weights
-
-_FIRST, _GROWTH = 0.6, 0.6
-"""Spaces between the lattice's lines, in cells: the first, and how fast they grow with the distance from the border."""
 
 DOUBT = 0.07
 """Surprise of a node (`Nodes.doubt`), relative to all light, from which the elements around get their own receivers."""
@@ -31,15 +28,6 @@ _SURE = 0.25
 
 _CURVE = 0.1
 """Error of one receiver for an element, over the difference between the halves of its cell."""
-
-_SPACES, _FEWEST_CELLS = 6, 2
-"""Widest spaces between lines of nodes: so many in a stretch, but of so many cells at least."""
-
-_HALF = 0.65
-"""Share of a space that may be left open before the middle."""
-
-_BESIDE = 0.12
-"""Distance from the end of a stretch to its first line of nodes, in cells: light changes fast beside other planes."""
 
 _FEWEST_OWN = 1_000
 """Elements in doubt that may always have receivers of their own; no more than the lattice has where that is more."""
@@ -388,7 +376,7 @@ def _enter(lattice: Layout, entries: _Entries) -> None:
     """Add the lattice's nodes, and the weights of all elements that are not cut."""
     grid = lattice.grid
     stretches = [
-        [(a, n, a + _lines(n, widest, spacing)) for a, n in along]
+        [(a, n, a + lines_along(n, widest, spacing)) for a, n in along]
         for along, widest, spacing in zip(lattice.stretches, lattice.widest, grid.spacing, strict=True)
     ]
     lines = [np.concatenate([part[2] for part in along]) for along in stretches]
@@ -404,8 +392,8 @@ def _enter(lattice: Layout, entries: _Entries) -> None:
 
     def enter(half: int, centre, places, shares, order: int, out: list) -> None:
         row, column = np.divmod(whole, grid.columns)
-        line_a, weight_a = _stencils(stretches[0], np.arange(grid.rows), centre[0], places[:, 0], order)
-        line_b, weight_b = _stencils(stretches[1], np.arange(grid.columns), centre[1], places[:, 1], order)
+        line_a, weight_a = stencils(stretches[0], np.arange(grid.rows), centre[0], places[:, 0], order)
+        line_b, weight_b = stencils(stretches[1], np.arange(grid.columns), centre[1], places[:, 1], order)
         node = numbers[line_a[row][:, :, None], line_b[column][:, None, :]]
         weight_a *= shares[:, None, None]
         weight = np.matmul(weight_a.transpose(1, 2, 0)[:, None], weight_b.transpose(1, 0, 2)[None])[row, column]
@@ -427,57 +415,7 @@ def _foretell(stretches, numbers: np.ndarray, entries: _Entries) -> None:
         first = 0
         for _, _, lines in stretches[axis]:
             mine = np.moveaxis(np.take(numbers, np.arange(first, first + len(lines)), axis=axis), axis, 0)
-            others, weights = _left_out(lines)
+            others, weights = left_out(lines)
             one, other, share = np.broadcast_arrays(mine[:, :, None], mine[others].swapaxes(1, 2), weights[:, None])
             out.append((one.ravel(), other.ravel(), share.ravel()))
             first += len(lines)
-
-
-def _left_out(lines: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(n, 4) int and float: for each line the others that would foretell it, by these weights; itself, if outermost."""
-    count = len(lines)
-    others, weights = np.repeat(np.arange(count)[:, None], 4, axis=1), np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
-    if count >= 5:
-        inner = np.arange(1, count - 1)
-        start = np.clip(inner - 2, 0, count - 5)
-        around = start[:, None] + np.arange(4)
-        others[inner] = around + (around >= inner[:, None])
-        weights[inner] = lagrange(lines[others[inner]], lines[inner])
-    return others, weights
-
-
-def _lines(count: int, widest: float, spacing: int = 1) -> np.ndarray:
-    """Places of the lines of nodes along a stretch, in cells: close at its ends, wider and wider towards its middle.
-
-    Spaces are no wider than ``widest`` or a few cells. ``spacing`` cells are looked at as one where they fill the
-    stretch.
-    """
-    if spacing > 1 and count % spacing == 0:
-        return spacing * _lines(count // spacing, widest / spacing)
-    if count == 1:
-        return np.array([_BESIDE, 1 - _BESIDE])
-    middle, widest = 0.5 * count, max(_FEWEST_CELLS, min(count / _SPACES, widest))
-    half = [_BESIDE]
-    while (left := middle - half[-1]) > _HALF * (space := min(widest, _FIRST + _GROWTH * half[-1])):
-        # never in the very middle, where other surfaces often lie in line
-        half.append(half[-1] + min(space, 2 / 3 * left))
-    return np.array(half + [count - place for place in half[::-1]])
-
-
-def _stencils(stretches: list, cells: np.ndarray, centre: float, places: np.ndarray, order: int):
-    """Lines that serve cells ``(n, order)``, and Lagrange's weights for places in them ``(k, n, order)``.
-
-    Lines are those around each cell's own ``centre``; unused ones weigh nothing.
-    """
-    numbers, weights = np.zeros((len(cells), order), np.int64), np.zeros((len(places), len(cells), order))
-    first = 0
-    for begin, count, lines in stretches:
-        mine = np.flatnonzero((cells >= begin) & (cells < begin + count))
-        used = min(order, len(lines))
-        start = np.clip(np.searchsorted(lines, cells[mine] + centre) - used // 2, 0, len(lines) - used)
-        index = start[:, None] + np.arange(used)
-        at, place = lines[index], places[:, None] + cells[mine]
-        weights[:, mine, :used] = lagrange(at, place)
-        numbers[mine, :used] = first + index
-        first += len(lines)
-    return numbers, weights
