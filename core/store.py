@@ -40,7 +40,7 @@ _DAMAGED = (
 )
 """What NumPy and zipfile raise over bytes that they cannot make sense of, and `_array` over what does not fit."""
 
-FORMAT = 5
+FORMAT = 6
 """Raised with every change of what files hold or of how it is found."""
 
 _ARRAYS = (
@@ -80,7 +80,7 @@ def save_transfer(transfer: Transfer, path) -> Path:
             arrays[f"{name}_{part.name}"] = getattr(getattr(transfer.nodes, name), part.name)
     arrays["exchange_factors"] = transfer.exchange.factors
     arrays["exchange_spread"] = transfer.exchange.spread
-    for name in ("lost", "spread", "missing"):
+    for name in ("lost", "spread", "missing", "beyond"):
         arrays[f"conservation_{name}"] = getattr(transfer.conservation, name)
     for name in _PARTS:
         arrays[f"enclosures_{name}"] = getattr(transfer.conservation.enclosures, name)
@@ -239,6 +239,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
             array("conservation_lost", np.float64, elements),
             array("conservation_spread", np.float64, count),
             missing,
+            array("conservation_beyond", np.float64, patches),
             enclosures,
         ),
         unhidden=bool(header["unhidden"]),
