@@ -31,6 +31,9 @@ EXACT_OUTLINES = 400
 _OF_LUMINOUS, _OF_SUN_PATCHES = 2.4, 1.0
 """How fine the receivers of their light alone are, over those of all light: the Sun's comes anew with every hour."""
 
+_CLOSED = 1e-3
+"""Share of luminous surfaces' light that may escape from what counts as closed."""
+
 _FINEST = 1e-6
 """Change left to come, over all light, below which products are summed in float64."""
 
@@ -218,7 +221,7 @@ def interreflect(
             deep_emitted = emitted
             found = _gather_bright(transfer, emitters, deep_emitted, _OF_LUMINOUS, exact, recorder.part(0.1, 0.4))
         components["emitted"], adjusted[0], beyond_emitted = brought_home(
-            transfer, found, geometry.of_elements("exitance"), beyond_emitted
+            transfer, found, geometry.of_elements("exitance"), beyond_emitted, reflected=False
         )
     sky = components["sky_direct"] + components["sky_specular"]
     smooth = sky + components["emitted"]
@@ -234,7 +237,9 @@ def interreflect(
         first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, exact, recorder.part(0.4, 0.8))
         shifts = sunlight.shifts(geometry.triangles, geometry.planes.outline_sheet)
         beyond = float((geometry.areas * share * dots(transfer.slopes_of_lost, shifts)).sum())
-        first, adjusted[1], beyond = brought_home(transfer, first, share * (sun - sunlight.blur), beyond)
+        first, adjusted[1], beyond = brought_home(
+            transfer, first, share * (sun - sunlight.blur), beyond, reflected=True
+        )
     smooth, once = geometry.patch_means(smooth), geometry.patch_means(first)
 
     def checkpoint() -> None:
@@ -375,11 +380,12 @@ def gather_patches(transfer: Transfer, exitance: np.ndarray, exact: bool) -> np.
 
 
 def brought_home(
-    transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray, beyond: float
+    transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray, beyond: float, reflected: bool
 ) -> tuple[np.ndarray, float, float]:
     """Illuminance that elements of exitance ``(e,)`` cause, made to add up; lumens out by; and what escapes ``beyond``.
 
-    ``beyond``: lumens that escape beyond elements' mean shares.
+    ``beyond``: lumens that escape beyond elements' mean shares. Light that is not ``reflected`` is exact and stays so
+    where any of it escapes, whatever the globe tells of that.
     """
     conservation = transfer.conservation
     flux = transfer.geometry.areas * exitance
@@ -387,7 +393,8 @@ def brought_home(
     sent = float(flux.sum()) - escaping
     landed = _sum(conservation.kept, illuminance)
     missing = sent - landed
-    believed = missing * trusted(escaping / max(float(flux.sum()), 1e-300))
+    closed = float(escaping <= _CLOSED * sent)
+    believed = missing * (trusted(escaping / max(float(flux.sum()), 1e-300)) if reflected else closed)
     home = illuminance + believed * _spread(transfer, illuminance)
     if home.min(initial=0.0) < 0:
         home = illuminance * max(landed + believed, 0.0) / max(landed, 1e-300)
