@@ -34,8 +34,8 @@ class Balance:
     defect : float
         What fails to close the balance, relative to ``entering``.
     adjusted : float
-        What failed to close it before the small errors of means over areas were made up for (see `Conservation`),
-        relative to ``entering``: how well the scene is resolved.
+        What failed to close it before the small errors of means over areas were made up for, where light arrives and
+        where it escapes (see `Conservation`), relative to ``entering``: how well the scene is resolved.
     """
 
     entering: float
@@ -63,10 +63,13 @@ def lumen_balance(result: Result) -> Balance:
     flux = area * (emitted + reflectance * illuminance)
     every = np.ones(geometry.targets.columns)
     open_share = transfer.sky_direct.times(every) + transfer.sky_specular.times(every)
+    # not `on_elements`, which leaves out what is interpolated below nothing: what stays is told with it
     escaped, unlit, lost = (
-        float(flux @ transfer.on_elements(share)) for share in (open_share, transfer.unlit, transfer.truncated)
+        float(flux @ transfer.nodes.weights.apply(share)) for share in (open_share, transfer.unlit, transfer.truncated)
     )
-    escaped += result.field.beside
+    gone = escaped + unlit + lost
+    if gone > 0:  # shared alike by all that does not stay
+        escaped, unlit, lost = (part * (1 + result.field.beyond / gone) for part in (escaped, unlit, lost))
     absorbed = np.bincount(surface, weights=area * illuminance * absorptance, minlength=len(geometry.surface_materials))
     # light from outside that is cut with its chain never lands, so it is no part of entering
     truncated = lost

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .daylight import Daylight
-from .form_factors import patch_means, trusted
+from .form_factors import patch_means
 from .gather import gather
 from .geometry import sight_of
 from .parallel import run_parallel
@@ -194,7 +194,7 @@ def find_coefficients(
             if looked is not None:
                 out += looked[1] @ exitance
             else:
-                out += stays.settled(_from_patches(transfer, exitance), direct, lumens[sun])
+                out += stays.settled(_from_patches(transfer, exitance), exitance, direct, lumens[sun])
         if looked is None:
             out[:, : len(sky)] += direct
         report(0.6 + 0.4 * (first + len(some)) / columns, "interreflection")
@@ -242,11 +242,16 @@ class _Stays:
         self.held = self.parts.sums(self.parts.of_nodes, self.kept * conservation.spread)
         self.spread = conservation.spread / np.maximum(self.held, 1e-300)[self.parts.of_nodes]
         self.stay = self.parts.sums(self.parts.of_nodes, self.nodes * self.spread)
-        self.trust = trusted(float((area * share) @ conservation.lost) / max(float((area * share).sum()), 1e-300))
+        self.beyond = conservation.beyond
 
-    def settled(self, reflected: np.ndarray, direct: np.ndarray, lumens: np.ndarray) -> np.ndarray:
-        """Interreflected light ``(m, c)`` that adds up, for light that comes to the nodes, or as lumens to elements."""
-        missing = (self.nodes - self.kept) @ reflected
+    def settled(
+        self, reflected: np.ndarray, exitance: np.ndarray, direct: np.ndarray, lumens: np.ndarray
+    ) -> np.ndarray:
+        """Interreflected light ``(m, c)`` that adds up, for light that comes to the nodes, or as lumens to elements.
+
+        ``exitance`` (p, c) of the patches that it comes from.
+        """
+        missing = (self.nodes - self.kept) @ reflected - self.beyond @ exitance
         missing[: direct.shape[1]] += self.nodes @ direct
         missing[direct.shape[1] :] += lumens
         landed = np.array(
@@ -254,7 +259,7 @@ class _Stays:
         )
         landed[self.held <= 0] = 0.0
         shares = landed / np.maximum(landed.sum(axis=0), 1e-300)
-        shares *= self.trust * missing / np.maximum(1 - self.stay @ shares, 1e-12)
+        shares *= missing / np.maximum(1 - self.stay @ shares, 1e-12)
         return reflected + self.spread[:, None] * shares[self.parts.of_nodes]
 
 

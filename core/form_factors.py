@@ -329,6 +329,8 @@ class Conservation:
         Illuminance of the nodes for one lumen more in their enclosure [1/m²].
     missing : (p,) float
         Lumens that are missing for one lm/m² of each patch's exitance [m²].
+    beyond : (p,) float
+        Lumens that escape beyond ``lost``, likewise: what is sent, seems to stay and is not believed to arrive [m²].
     enclosures : Enclosures
     """
 
@@ -336,6 +338,7 @@ class Conservation:
     lost: np.ndarray
     spread: np.ndarray
     missing: np.ndarray
+    beyond: np.ndarray
     enclosures: Enclosures
 
     @classmethod
@@ -357,9 +360,10 @@ class Conservation:
         sent = geometry.patch_sums(area * (1 - lost))
         for profile in geometry.targets.patches.profiles:
             profile.evened(sent, landed)
-        missing = (sent - landed) * trusted(1 - sent / np.maximum(geometry.patch_areas, 1e-300))
+        trust = trusted(1 - sent / np.maximum(geometry.patch_areas, 1e-300))
+        missing, beyond = (sent - landed) * trust, (sent - landed) * (1 - trust)
         total = enclosures.sums(enclosures.of_nodes, share * seen)[enclosures.of_nodes]
-        return cls(kept, lost, np.divide(seen, total, out=seen, where=total > 0), missing, enclosures)
+        return cls(kept, lost, np.divide(seen, total, out=seen, where=total > 0), missing, beyond, enclosures)
 
     def made_up(self, exitance: np.ndarray) -> np.ndarray:
         """(m,) or (m, c): illuminance of the nodes by what is missing of patches' exitance ``(p,)`` or ``(p, c)``."""

@@ -32,7 +32,7 @@ _OF_LUMINOUS, _OF_SUN_PATCHES = 2.4, 1.0
 """How fine the receivers of their light alone are, over those of all light: the Sun's comes anew with every hour."""
 
 _CLOSED = 1e-3
-"""Share of bright polygons' light that may escape from what counts as closed."""
+"""Share of luminous surfaces' light that may escape from what counts as closed."""
 
 _FINEST = 1e-6
 """Change left to come, over all light, below which products are summed in float64."""
@@ -65,8 +65,9 @@ class Field:
         ``sources`` are followed through [lm/m²].
     by_patches : (e,) float
         Illuminance whose reflection patches send out: all but sun patches [lx].
-    beside : float
-        Reflected sunlight that escapes beyond the elements' mean shares, as it falls beside their middles [lm].
+    beyond : float
+        What escapes beyond the elements' mean shares: sunlight falls beside their middles, and what does not arrive
+        is gone where that is known better than what is seen to stay [lm].
     adjusted : float
         What means over areas were out by before the light was made to add up, without regard to sign [lm].
     """
@@ -79,7 +80,7 @@ class Field:
     deep_emitted: np.ndarray
     deep_reflected: np.ndarray
     by_patches: np.ndarray
-    beside: float
+    beyond: float
     adjusted: float
 
     def of_cells(self, geometry: Geometry, initial: bool) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -209,16 +210,19 @@ def interreflect(
     exact = cycles is not None
     emitters, sunny = bright
     sun = components["sun_direct"] + components["sun_specular"]
-    none, adjusted = np.zeros(len(emitted)), np.zeros(4)
+    none, adjusted, beyond_emitted = np.zeros(len(emitted)), np.zeros(5), 0.0
     by_globe, deep_emitted, deep_reflected = none, none, none
     if emitted.any():
         if transfer.unhidden or not emitters:
             by_globe = none if emitters else emitted  # at free points the globe would err where patches do not
             found = transfer.on_elements(gather_patches(transfer, emitted, exact))
+            beyond_emitted = _sum(transfer.conservation.beyond, emitted)
         else:
             deep_emitted = emitted
             found = _gather_bright(transfer, emitters, deep_emitted, _OF_LUMINOUS, exact, recorder.part(0.1, 0.4))
-        components["emitted"], adjusted[0] = brought_home(transfer, found, geometry.of_elements("exitance"))
+        components["emitted"], adjusted[0], beyond_emitted = brought_home(
+            transfer, found, geometry.of_elements("exitance"), beyond_emitted, reflected=False
+        )
     sky = components["sky_direct"] + components["sky_specular"]
     smooth = sky + components["emitted"]
     share = geometry.of_elements("diffuse_reflectance")
@@ -226,14 +230,16 @@ def interreflect(
     if cycles == 0 or not reflectance.any():
         components["interreflected"] = np.zeros(len(sun))
         dark, out = np.zeros(len(sun)), float(np.abs(adjusted).sum())
-        return Field(components, none, by_globe, emitters, len(emitters), deep_emitted, none, dark, 0.0, out)
-    first, beside = np.zeros(len(sun)), 0.0
+        return Field(components, none, by_globe, emitters, len(emitters), deep_emitted, none, dark, beyond_emitted, out)
+    first, beyond = np.zeros(len(sun)), 0.0
     if sunny:
         deep_reflected = reflectance * geometry.patch_means(sun - sunlight.blur)
         first = _gather_bright(transfer, sunny, deep_reflected, _OF_SUN_PATCHES, exact, recorder.part(0.4, 0.8))
         shifts = sunlight.shifts(geometry.triangles, geometry.planes.outline_sheet)
-        beside = float((geometry.areas * share * dots(transfer.slopes_of_lost, shifts)).sum())
-        first, adjusted[1] = brought_home(transfer, first, share * (sun - sunlight.blur), beside)
+        beyond = float((geometry.areas * share * dots(transfer.slopes_of_lost, shifts)).sum())
+        first, adjusted[1], beyond = brought_home(
+            transfer, first, share * (sun - sunlight.blur), beyond, reflected=True
+        )
     smooth, once = geometry.patch_means(smooth), geometry.patch_means(first)
 
     def checkpoint() -> None:
@@ -247,9 +253,10 @@ def interreflect(
         settled = _cycles_after_first(exchange, reflectance, smooth, once, cycles, checkpoint)
     exitance = reflectance * settled
     again = np.maximum(first + transfer.on_elements(gather_patches(transfer, exitance, exact)), 0.0)
-    adjusted[2] = transfer.conservation.missing @ exitance
+    adjusted[2:4] = transfer.conservation.missing @ exitance, transfer.conservation.beyond @ exitance
+    beyond += float(adjusted[3])
     if cycles is None:
-        again, adjusted[3] = settled_home(transfer, again, sun + components["emitted"] + sky, share, beside)
+        again, adjusted[4] = settled_home(transfer, again, sun + components["emitted"] + sky, share, beyond)
     components["interreflected"] = again
     sources = [*emitters, *sunny]
     return Field(
@@ -261,7 +268,7 @@ def interreflect(
         deep_emitted,
         deep_reflected,
         sum(components.values()) - (sun - sunlight.blur if sunny else 0.0),
-        beside,
+        beyond_emitted + beyond,
         float(np.abs(adjusted).sum()),
     )
 
@@ -373,39 +380,42 @@ def gather_patches(transfer: Transfer, exitance: np.ndarray, exact: bool) -> np.
 
 
 def brought_home(
-    transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray, beside: float = 0.0
-) -> tuple[np.ndarray, float]:
-    """Illuminance that elements of exitance ``(e,)`` cause, made to sum to it where none escapes; lumens out by.
+    transfer: Transfer, illuminance: np.ndarray, exitance: np.ndarray, beyond: float, reflected: bool
+) -> tuple[np.ndarray, float, float]:
+    """Illuminance that elements of exitance ``(e,)`` cause, made to add up; lumens out by; and what escapes ``beyond``.
 
-    ``beside``: lumens that escape beyond elements' mean shares.
+    ``beyond``: lumens that escape beyond elements' mean shares. Light that is not ``reflected`` is exact and stays so
+    where any of it escapes, whatever the globe tells of that.
     """
     conservation = transfer.conservation
     flux = transfer.geometry.areas * exitance
-    escaping = _sum(flux, conservation.lost) + beside
+    escaping = _sum(flux, conservation.lost) + beyond
     sent = float(flux.sum()) - escaping
-    missing = sent - _sum(conservation.kept, illuminance)
-    if escaping > _CLOSED * sent:
-        return illuminance, missing  # the globe knows what escapes less well than this light is known
-    home = illuminance + missing * _spread(transfer, illuminance)
+    landed = _sum(conservation.kept, illuminance)
+    missing = sent - landed
+    closed = float(escaping <= _CLOSED * sent)
+    believed = missing * (trusted(escaping / max(float(flux.sum()), 1e-300)) if reflected else closed)
+    home = illuminance + believed * _spread(transfer, illuminance)
     if home.min(initial=0.0) < 0:
-        home = illuminance * max(sent, 0.0) / max(sent - missing, 1e-300)
-    return home, missing
+        home = illuminance * max(landed + believed, 0.0) / max(landed, 1e-300)
+    return home, missing, beyond + missing - believed
 
 
 def settled_home(
-    transfer: Transfer, interreflected: np.ndarray, initial: np.ndarray, share: np.ndarray, beside: float
+    transfer: Transfer, interreflected: np.ndarray, initial: np.ndarray, share: np.ndarray, beyond: float
 ) -> tuple[np.ndarray, float]:
-    """Interreflected light as `brought_home`, when all of it is reflected again by ``share`` (e,)."""
+    """Interreflected light as `brought_home`, when all of it is reflected again by ``share`` (e,).
+
+    What is out here, after patches were made to add up, is that light is uneven within them: elements know it better.
+    """
     conservation, area = transfer.conservation, transfer.geometry.areas
     stays = area * share * (1 - conservation.lost)
     spread = _spread(transfer, interreflected)
-    missing = _sum(stays, initial + interreflected) - beside - _sum(conservation.kept, interreflected)
-    # of the scene, not of the light at hand, so that lights add up
-    trust = trusted(_sum(area * share, conservation.lost) / max(float((area * share).sum()), 1e-300))
-    home = interreflected + trust * missing / max(1 - _sum(stays, spread), 1e-12) * spread
+    missing = _sum(stays, initial + interreflected) - beyond - _sum(conservation.kept, interreflected)
+    home = interreflected + missing / max(1 - _sum(stays, spread), 1e-12) * spread
     if home.min(initial=0.0) < 0:  # too much arrived, and some are too dark to give of it: all give by what they have
         landed, leaving = _sum(conservation.kept, interreflected), _sum(stays, interreflected)
-        home = interreflected * max(1 + trust * missing / max(landed - leaving, 1e-12 * landed, 1e-300), 0.0)
+        home = interreflected * max(1 + missing / max(landed - leaving, 1e-12 * landed, 1e-300), 0.0)
     return home, missing
 
 

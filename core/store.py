@@ -81,7 +81,7 @@ def save_transfer(transfer: Transfer, path) -> Path:
             arrays[f"{name}_{part.name}"] = getattr(getattr(transfer.nodes, name), part.name)
     arrays["exchange_factors"] = transfer.exchange.factors
     arrays["exchange_spread"] = transfer.exchange.spread
-    for name in ("lost", "spread", "missing"):
+    for name in ("lost", "spread", "missing", "beyond"):
         arrays[f"conservation_{name}"] = getattr(transfer.conservation, name)
     for name in _PARTS:
         arrays[f"enclosures_{name}"] = getattr(transfer.conservation.enclosures, name)
@@ -247,6 +247,7 @@ def _rebuilt(scene: Scene, options: Options, known: Fingerprint, header, content
             array("conservation_lost", np.float64, elements),
             array("conservation_spread", np.float64, count),
             missing,
+            array("conservation_beyond", np.float64, patches),
             enclosures,
         ),
         unhidden=bool(header["unhidden"]),
