@@ -18,7 +18,7 @@ from .globe import Hemisphere
 from .outlines import Outlines
 from .projection import Beams, HalfSpace, Obstacles, edge_planes, obstacles_within, reflect, reflect_points
 from .sighting import Rays, Sighting, ray_sighting
-from .tracing import DEEPEST_CHAIN, ChainLimits, Tracer, thinned
+from .tracing import DEEPEST_CHAIN, FAINTEST, ChainLimits, Tracer, thinned
 from .tree import Tree
 from .visibility import Partial, look
 
@@ -29,8 +29,9 @@ _LOOKED_INTO = 4
 """So are all after more mirrors or panes than this, which show little light each."""
 
 _PANES_LOOKED_THROUGH = 12
-_FAINT = 0.01
-"""Through panes alone, which don't multiply what is seen, as long as some receiver sees more than this by them."""
+_FAINT = 1e-3
+"""Through panes alone, which don't multiply what is seen, as long as some receiver sees more than this by them: what
+shines behind them is far brighter than the room."""
 
 _FEW_WILL_DO = 0.1
 """Where panes mirror as well as transmit, chains that show no receiver more than this are followed as few rays."""
@@ -188,7 +189,8 @@ class GroupSight:
                     np.full(len(found.row), len(chain)),
                 )
                 yield ray_sighting(self.outlines, rays, found.outline, mirrors, none)
-                left += tracer.after(rays, found.outline, found.distance, truncated)
+                faint = np.full(len(rays.rows), FAINTEST)
+                left += tracer.after(rays, found.outline, found.distance, truncated, faint)
             sighting = Sighting(
                 rows, origin, horizon.normal, beams, obstacles, view, weights, mirrors, self.outlines, partial
             )
@@ -276,7 +278,7 @@ class GroupSight:
         if not self.outlines.splits_light:
             return weights
         row, beam = np.nonzero(weights)
-        kept, heavier = thinned(row, weights[row, beam])
+        kept, heavier = thinned(row, weights[row, beam], FAINTEST)
         few = np.zeros_like(weights)
         few[row[kept], beam[kept]] = heavier
         return few
@@ -298,8 +300,9 @@ class GroupSight:
 
 def _one_by_one(weights: np.ndarray, chain: tuple, thinned_out: bool) -> bool:
     """Whether beams of weights ``(r, k)`` are followed as single rays after a chain of mirrors and panes."""
-    if thinned_out and float(weights.sum(axis=1).max()) < _FEW_WILL_DO:
-        return True
+    most = float(weights.sum(axis=1).max())
     if len(chain) <= _PANES_LOOKED_THROUGH and all(kind == "through" for _, kind, _ in chain):
-        return float(weights.sum(axis=1).max()) < _FAINT
+        return most < _FAINT
+    if thinned_out and most < _FEW_WILL_DO:
+        return True
     return len(chain) > _LOOKED_INTO or np.count_nonzero(weights) < _FEW_BEAMS

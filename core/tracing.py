@@ -15,9 +15,12 @@ from .sighting import Rays, Sighting, ray_sighting
 DEEPEST_CHAIN = 200
 """No chain is followed further, even between perfect mirrors."""
 
-_FAINT = 3e-4
-"""Where panes mirror as well as transmit, rays that show less than this of what a receiver sees are thinned out to
-fewer that show as much, and go on one way: else they would double at every pane."""
+_FAINT = 6e-4
+"""Where panes mirror as well as transmit, rays that show less than this of what all rays of a receiver show are thinned
+out to fewer that show as much, and go on one way: else they would double at every pane."""
+
+FAINTEST = 1e-5
+"""Rays that show less than this of all that a receiver sees are thinned out however little its others show."""
 
 _MOST_IMAGES = 80
 _MOST_OF_SOURCES, _MOST_OF_FIRST = 400, 2_000
@@ -108,10 +111,11 @@ class Tracer:
             No beams.
         """
         rays = Rays.joined(left)
+        faint = np.maximum(_FAINT * np.bincount(rays.rows, rays.weights, len(truncated)), FAINTEST)
         while len(rays.rows):
             checkpoint()
             if self.outlines.splits_light:
-                kept, weights = thinned(rays.rows, rays.weights)
+                kept, weights = thinned(rays.rows, rays.weights, faint[rays.rows])
                 rays = replace(rays.take(kept), weights=weights)
             flight = self.outlines.rays.through_mirrors(
                 rays.points,
@@ -129,10 +133,13 @@ class Tracer:
             for kind in np.unique(kinds[kinds >= 0]):
                 mine = np.flatnonzero(kinds == kind)
                 yield ray_sighting(self.outlines, rays.take(mine), outline[mine], int(kind), none)
-            rays = Rays.joined(self.after(rays, outline, distance, truncated))
+            rays = Rays.joined(self.after(rays, outline, distance, truncated, faint[rays.rows]))
 
-    def after(self, rays: Rays, outline, distance, truncated) -> list[Rays]:
-        """Rays that met outlines ``(n,)``, after the mirrors and panes among these."""
+    def after(self, rays: Rays, outline, distance, truncated, faint) -> list[Rays]:
+        """Rays that met outlines ``(n,)``, after the mirrors and panes among these.
+
+        Those of a weight below ``faint (n,)`` go on one way of two.
+        """
         if not self.outlines.any_specular:
             return []
         met = np.flatnonzero(outline >= 0)
@@ -145,18 +152,18 @@ class Tracer:
             here = np.flatnonzero(outline[met] == o)
             here_rays = rays.take(met[here])
             cosine = onto(here_rays.directions, self.outlines.normals[o])
-            onward += self._onward(here_rays, place[here], int(o), cosine < 0, cosine, truncated)
+            onward += self._onward(here_rays, place[here], int(o), cosine, truncated, faint[met[here]])
         return onward
 
-    def _onward(self, rays: Rays, places, o: int, front, cosine, truncated) -> list[Rays]:
+    def _onward(self, rays: Rays, places, o: int, cosine, truncated, faint) -> list[Rays]:
         """Rays that met an outline at ``places``, after it: those bright enough to follow."""
         onward = []
         for side in (True, False):
-            mine = np.flatnonzero(front == side)
+            mine = np.flatnonzero((cosine < 0) == side)
             if not len(mine):
                 continue
             some = rays.take(mine)
-            for kind, share in _either(list(self.outlines.ways(o, side, cosine[mine])), some):
+            for kind, share in _either(list(self.outlines.ways(o, side, cosine[mine])), some, faint[mine]):
                 going = np.flatnonzero(share > 0)
                 after = some.take(going).onward(places[mine[going]], share[going], self.outlines.normals[o], kind)
                 kept = (after.throughput >= self.limits.cutoff) & (after.depth < DEEPEST_CHAIN)
@@ -165,20 +172,20 @@ class Tracer:
         return onward
 
 
-def thinned(rows, weights) -> tuple[np.ndarray, np.ndarray]:
+def thinned(rows, weights, faint=_FAINT) -> tuple[np.ndarray, np.ndarray]:
     """Which of rays of some weights ``(n,)`` to follow, and the weights of these: faint ones for those left out too."""
-    chance = np.minimum(weights / _FAINT, 1.0)
+    chance = np.minimum(weights / faint, 1.0)
     kept = np.flatnonzero(_drawn(rows, chance))
     return kept, weights[kept] / chance[kept]
 
 
-def _either(ways: list[tuple[str, np.ndarray]], rays: Rays) -> list[tuple[str, np.ndarray]]:
+def _either(ways: list[tuple[str, np.ndarray]], rays: Rays, faint) -> list[tuple[str, np.ndarray]]:
     """Ways on with the share of each ray ``(n,)``: of two, faint rays go one for both, in proportion to the shares."""
     if len(ways) < 2:
         return ways
     (one, first), (other, second) = ways
     both = first + second
-    lone = rays.weights * both <= 2 * _FAINT
+    lone = rays.weights * both <= 2 * faint
     drawn = _drawn(rays.rows, np.divide(first, both, out=np.zeros_like(both), where=both > 0))
     return [
         (one, np.where(lone, np.where(drawn, both, 0.0), first)),

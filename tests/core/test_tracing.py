@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from builders import box_polygons
 
 import luzespecular as luz
 from luzespecular import tracing
@@ -83,3 +84,45 @@ def test_what_is_thinned_does_not_depend_on_other_receivers():
     alone, heavy = tracing.thinned(rows[mine], weights[mine])
     assert np.array_equal(np.flatnonzero(mine)[alone], kept[rows[kept] == 2])
     assert heavy == pytest.approx(heavier[rows[kept] == 2])
+
+
+def to_window(points, normals, distances) -> np.ndarray:
+    """(n, k) form factors to a window of 1 m × 0.8 m across y = 0 from points so much farther off."""
+    steps = (np.arange(50) + 0.5) / 50
+    x, z = (grid.ravel() for grid in np.meshgrid(0.5 + steps, 0.8 + 0.8 * steps))
+    found = np.empty((len(points), len(distances)))
+    for k, far in enumerate(distances):
+        way = np.stack([x, np.full_like(x, far), z], axis=1) - points[:, None, :]
+        square = (way**2).sum(axis=2)
+        cosines = np.maximum(np.einsum("npc,nc->np", way, normals), 0) * way[..., 1]
+        found[:, k] = 0.8 * (cosines / square**2).mean(axis=1) / np.pi
+    return found
+
+
+def test_a_window_behind_two_panes_that_mirror_keeps_its_edges():
+    scene, black = luz.Scene(), luz.Material(diffuse_reflectance=1e-6)
+    walls = box_polygons((2, 6, 2))
+    for name in ("floor", "south", "west", "east", "ceiling"):
+        scene.add(name, walls[name], black)
+    for name, (x, z, width, height) in {
+        "sill": (0, 0, 2, 0.8),
+        "lintel": (0, 1.6, 2, 0.4),
+        "left": (0, 0.8, 0.5, 0.8),
+        "right": (1.5, 0.8, 0.5, 0.8),
+    }.items():
+        corner, across, up = np.array([x, 6, z]), np.array([width, 0, 0]), np.array([0, 0, height])
+        scene.add(name, [corner, corner + across, corner + across + up, corner + up], black)
+    for y in (3.0, 4.5):
+        pane = luz.Material(specular_reflectance=0.3, regular_transmittance=0.5)
+        scene.add(f"pane {y}", [[0, y, 0], [2, y, 0], [2, y, 2], [0, y, 2]], pane, two_sided=True)
+    light = luz.Daylight(sky=luz.UniformSky(1000), ground_reflectance=1.0)
+    result = luz.solve(scene, light, max_area=0.05, threads=1)
+    for name in ("floor", "south"):
+        faces = result.faces_of(name)
+        faces = faces[result.centroids[faces, 1] < 2.5]
+        # two panes 1.5 m apart show the window again and again, 3 m farther off each time
+        shown = to_window(result.centroids[faces], result.normals[faces], 6 + 3.0 * np.arange(6))
+        expected = 1000 * np.pi * 0.5**2 * shown @ 0.3 ** (2 * np.arange(6))
+        errors = result.initial[faces] / expected - 1
+        assert np.sqrt((errors**2).mean()) < 0.05, name
+        assert abs(np.average(errors, weights=expected)) < 0.01, name

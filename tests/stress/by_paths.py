@@ -156,6 +156,15 @@ def many_panes() -> luz.Scene:
     return scene
 
 
+def behind_mirroring_panes() -> luz.Scene:
+    """Two panes across a room that mirror 0.3 of the light and let half of it through."""
+    scene = room()
+    for k, y in enumerate((1.7, 3.3)):
+        pane = luz.Material(specular_reflectance=0.3, regular_transmittance=0.5)
+        scene.add(f"pane {k}", rectangle([0, y, 0], [4, 0, 0], [0, 0, 3]), pane, two_sided=True)
+    return scene
+
+
 def plates_on_both_sides_of_a_wall(gap: float) -> Outcome:
     """Two small plates of one mesh, in a lit room and in the closed one beside it: that one stays dark."""
     scene = closed_rooms(3, {"lit": (0, 0, 0), "dark": (3 + gap, 0, 0)})
@@ -191,6 +200,7 @@ def situations() -> Iterator[Situation]:
         ("slanting reveals in the Sun", splayed, SUNNY, (*walls, "reveal 0"), {}),
         ("boxes in contact, in the Sun", crowded, SUNNY, (*walls, "box 0"), {}),
         ("panes of all sorts side by side", many_panes, CLOUDY, walls, {}),
+        ("behind two panes that mirror", behind_mirroring_panes, CLOUDY, walls, {"count": 600_000}),
     ):
         yield row(name, lambda s=scene, li=light, n=names, o=options: against_paths(s(), li, n, **o), True)
     for gap in (0.0, 0.1):
