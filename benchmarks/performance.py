@@ -40,6 +40,7 @@ REUSES = (
     "another hour",
     "another hour, quick",
     "another sky",
+    "a sky's luminance, 6,000 directions",
     "another reflectance",
     "loaded",
     "saved",

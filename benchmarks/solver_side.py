@@ -128,12 +128,15 @@ def reuse(what: str, threads: int, repeats: int, most_seconds: float, transfer: 
     prepared = luz.load(transfer, room.scene("S1"), threads=threads)
     loading, loaded = time.perf_counter() - start, apart.peak_gb()
     paler = rooms.paler()
+    directions = prepared.geometry.targets.globe.directions
+    directions = np.concatenate([directions, directions])[:6000]
     others = itertools.cycle([9.0, 10.0, 11.0, 12.0, 14.0])
     skies = itertools.cycle(["overcast", "uniform", "clear"])
     works: dict[str, Callable[[], object]] = {
         "another hour": lambda: prepared.solve(room.daylight(next(others))),
         "another hour, quick": lambda: prepared.solve(room.daylight(next(others)), quick=True),
         "another sky": lambda: prepared.solve(room.daylight(12.0, sky=next(skies), sun=False)),
+        "a sky's luminance, 6,000 directions": lambda: room.daylight(12.0, sky=next(skies)).sky_luminance(directions),
         "another reflectance": lambda: prepared.with_materials(paler).solve(room.daylight(12.0)),
         "a year": lambda: prepared.annual(lights),
         "saved": lambda: prepared.save(Path(transfer).with_suffix(".again.npz")),

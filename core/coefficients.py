@@ -194,7 +194,10 @@ def find_coefficients(
             if looked is not None:
                 out += looked[1] @ exitance
             else:
-                out += stays.settled(_from_patches(transfer, exitance), exitance, direct, lumens[sun])
+                reflected = _from_patches(transfer, exitance)
+                # sunlight's first reflection escapes as elements see it, as where a single Sun is solved
+                exitance[:, len(sky) :] -= reflectance[:, None].astype(np.float32) * on_patches[sun].T
+                out += stays.settled(reflected, exitance, direct, lumens[sun])
         if looked is None:
             out[:, : len(sky)] += direct
         report(0.6 + 0.4 * (first + len(some)) / columns, "interreflection")
@@ -249,7 +252,7 @@ class _Stays:
     ) -> np.ndarray:
         """Interreflected light ``(m, c)`` that adds up, for light that comes to the nodes, or as lumens to elements.
 
-        ``exitance`` (p, c) of the patches that it comes from.
+        ``exitance`` (p, c) of the patches that it comes from, as far as they tell what escapes of it.
         """
         missing = (self.nodes - self.kept) @ reflected - self.beyond @ exitance
         missing[: direct.shape[1]] += self.nodes @ direct

@@ -1,7 +1,6 @@
 """What every sky keeps: the horizon, the exact integral, shapes, speed."""
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -52,23 +51,6 @@ def test_shapes_of_directions(make):
     assert sky.luminance(np.empty((0, 3))).shape == (0,)
     with pytest.raises(SceneError, match=r"\(n, 3\)"):
         sky.luminance(np.zeros((4, 2)))
-
-
-def test_fast_enough_for_a_slider():
-    directions = some_directions(6000)
-
-    def best(run):
-        times = []
-        for _ in range(7):
-            start = time.perf_counter()
-            run()
-            times.append(time.perf_counter() - start)
-        return min(times)
-
-    assert best(clear) < 3e-3
-    assert best(perez) < 3e-3
-    for sky in (clear(), perez()):
-        assert best(lambda sky=sky: sky.luminance(directions)) < 2e-3
 
 
 def test_horizontal_integral_with_breaks_in_closed_form():
