@@ -346,8 +346,7 @@ def _gather_bright(
         run_parallel(work, handfuls, 1 if len(handfuls) <= _FOR_ONE_THREAD else transfer.threads, report)
         done = begun + share
         # there is other, even light as well: where this is faint, its unevenness matters little
-        even = _sum(geometry.areas, nodes.weights.apply(found)) / max(float(geometry.areas.sum()), 1e-300)
-        return (found + even)[:, None]
+        return (found + found.mean())[:, None]
 
     nodes = settled(transfer.lattice, geometry.fracture, evaluate, times * transfer.times)
     by_many_mirrors = product(transfer.deep_factors, deep, exact)
