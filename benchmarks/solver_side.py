@@ -128,8 +128,7 @@ def reuse(what: str, threads: int, repeats: int, most_seconds: float, transfer: 
     prepared = luz.load(transfer, room.scene("S1"), threads=threads)
     loading, loaded = time.perf_counter() - start, apart.peak_gb()
     paler = rooms.paler()
-    directions = prepared.geometry.targets.globe.directions
-    directions = np.concatenate([directions, directions])[:6000]
+    directions = np.resize(prepared.geometry.targets.globe.directions, (6000, 3))
     others = itertools.cycle([9.0, 10.0, 11.0, 12.0, 14.0])
     skies = itertools.cycle(["overcast", "uniform", "clear"])
     works: dict[str, Callable[[], object]] = {

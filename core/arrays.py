@@ -22,6 +22,14 @@ def runs(first, count) -> np.ndarray:
     return np.arange(int(np.sum(count))) + np.repeat(first - np.cumsum(count) + count, count)
 
 
+def places_among(known: np.ndarray, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(k,) int: where each of ``wanted`` is among ascending numbers ``known`` (n,); (k,) bool: whether it is there."""
+    if not len(known):
+        return np.zeros(len(wanted), np.int64), np.zeros(len(wanted), bool)
+    place = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
+    return place, known[place] == wanted
+
+
 def onto(vectors: np.ndarray, axis) -> np.ndarray:
     """(n,) inner products of vectors ``(n, 3)`` with one: BLAS would wake threads for it that then wait for work."""
     return vectors[:, 0] * axis[0] + vectors[:, 1] * axis[1] + vectors[:, 2] * axis[2]

@@ -61,8 +61,7 @@ def lumen_balance(result: Result) -> Balance:
     outside = sum(components[name] for name in ("sky_direct", "sky_specular", "sun_direct", "sun_specular"))
     entering = float((area * (emitted + outside * (absorptance + reflectance))).sum())
     flux = area * (emitted + reflectance * illuminance)
-    every = np.ones(geometry.targets.columns)
-    open_share = transfer.sky_direct.times(every) + transfer.sky_specular.times(every)
+    open_share = transfer.sky_direct.row_totals() + transfer.sky_specular.row_totals()
     # not `on_elements`, which leaves out what is interpolated below nothing: what stays is told with it
     escaped, unlit, lost = (
         float(flux @ transfer.nodes.weights.apply(share)) for share in (open_share, transfer.unlit, transfer.truncated)

@@ -258,15 +258,12 @@ class Light:
         sides = np.zeros((targets.columns, 4), np.float32)
         sides[:-1] = 0.25 * (1 + np.stack([east, -east, north, -north], axis=1))
         sides[-1] = 0.25
-        patches, cuts = targets.patches.count, geometry.fracture
-        sheet = np.zeros(patches, np.int64)
-        mine = targets.patches.of_element >= 0
-        sheet[targets.patches.of_element[mine]] = cuts.element_sheet[mine]
+        sheet = targets.patches.sheets(geometry.fracture.element_sheet)
         group = sheet * _GROUPS // (2 * len(planes.sheet_surface))
         order = np.argsort(group, kind="stable") if (np.diff(group) < 0).any() else slice(None)
         begin = np.flatnonzero(np.diff(group[order], prepend=-1))
         reflected = np.zeros((count - first, _GROUPS))
-        for row in range(first, count if patches else first, _ROWS):
+        for row in range(first, count if len(sheet) else first, _ROWS):
             some = rows.form_factors[row : min(row + _ROWS, count)][:, order]
             reflected[row - first :][: len(some), group[order][begin]] = np.add.reduceat(some, begin, axis=1)
         sky = rows.sky_direct.sums_of_rows(sides, first) + rows.sky_specular.sums_of_rows(sides, first)
@@ -346,8 +343,7 @@ class Conservation:
         """Compare what patches send out with what nodes receive."""
         area = geometry.fracture.element_areas
         kept = geometry.areas_kept
-        every = np.ones(geometry.targets.columns)
-        sky = rows.sky_direct.times(every) + rows.sky_specular.times(every)
+        sky = rows.sky_direct.row_totals() + rows.sky_specular.row_totals()
         lost = nodes.weights.apply(sky + rows.unlit + rows.truncated)
         weights = nodes.weights
         share = weights.gathered(kept, len(nodes.points))

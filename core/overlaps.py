@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from . import clipping, layers, polygons
-from .arrays import dots, runs
+from .arrays import dots, places_among, runs
 from .hemisphere import Shapes
 from .projection import Beams
 
@@ -345,9 +345,7 @@ class _Regions:
         row = np.repeat(np.arange(len(members)), more)
         other = runs(begin, more)
         if pairs is not None and len(row):
-            key = members[row, -1] * len(some) + other
-            place = np.minimum(np.searchsorted(pairs, key), len(pairs) - 1)
-            known = pairs[place] == key
+            _, known = places_among(pairs, members[row, -1] * len(some) + other)
             row, other = row[known], other[known]
         together = np.concatenate([members[row], other[:, None]], axis=1)
         moments = self.moments(some[together])

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from . import lattice, overlaps
-from .arrays import dots, onto, pick
+from .arrays import dots, onto, pick, places_among
 from .crossings import Candidates, Crossed, find_crossings, subtract_aligned
 from .projection import Beams, Obstacles
 from .views import OPEN, SHARED, Eye, View
@@ -160,8 +160,7 @@ def _cuts(crossed: Crossed, candidates: Candidates, eye: Eye, beams: Beams, obst
     keys = crossed.row[starts] * len(beams.directions) + crossed.beam[starts]
     grazing = candidates.grazing
     key = candidates.row[grazing] * len(beams.directions) + candidates.beam[grazing]
-    place = np.minimum(np.searchsorted(keys, key), len(keys) - 1)
-    mine = keys[place] == key
+    place, mine = places_among(keys, key)
     grazing, place = grazing[mine], place[mine]
     sizes = np.diff(np.append(starts, len(crossed.row)))
     number = np.concatenate([crossed.number, grazing])

@@ -90,6 +90,13 @@ class Patches:
         mine = self.of_element >= 0
         return np.bincount(self.of_element[mine], weights=values[mine], minlength=self.count).astype(float)
 
+    def sheets(self, element_sheet: np.ndarray) -> np.ndarray:
+        """(p,) int: a sheet that each patch lies on, of those of the elements ``(e,)``."""
+        sheet = np.zeros(self.count, np.int64)
+        mine = self.of_element >= 0
+        sheet[self.of_element[mine]] = element_sheet[mine]
+        return sheet
+
     def merged(self, grids: tuple[Grid, ...], element_sheet: np.ndarray) -> np.ndarray:
         """(p,) int: groups of patches that lie beside each other, twice as wide as they are.
 
@@ -99,9 +106,7 @@ class Patches:
             Runs of elements, whose patches are merged in fours; others in twos, as they are numbered in their sheet.
         element_sheet : (e,) int
         """
-        sheet = np.zeros(self.count, np.int64)
-        mine = self.of_element >= 0
-        sheet[self.of_element[mine]] = element_sheet[mine]
+        sheet = self.sheets(element_sheet)
         first = np.searchsorted(sheet, sheet) if (np.diff(sheet) >= 0).all() else np.zeros(self.count, np.int64)
         key = np.stack([sheet, (np.arange(self.count) - first) // 2, np.full(self.count, -1)])
         for grid in grids:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import polygons, rings
+from .arrays import places_among
 from .planes import Planes
 
 _SAME_PLACE = 1e-9
@@ -127,8 +128,8 @@ def _bodies(pieces: np.ndarray, counts: np.ndarray, tight: np.ndarray, same: flo
     span = int(corner.max(initial=0)) + 1
     there, back = one * span + two, two * span + one
     edges, first, many = np.unique(there, return_index=True, return_counts=True)
-    place = np.minimum(np.searchsorted(edges, back), len(edges) - 1)
-    paired = (edges[place] == back) & (many[place] == 1) & (many[np.searchsorted(edges, there)] == 1)
+    place, met = places_among(edges, back)
+    paired = met & (many[place] == 1) & (many[np.searchsorted(edges, there)] == 1)
     other = owner[first[place]]
     # each piece takes the lowest number around, until all of a body have the same
     body = np.arange(len(pieces))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .arrays import product
+from .arrays import places_among, product
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ class SparseRows:
     def enter(self, rows: np.ndarray, values: np.ndarray) -> None:
         """Enter rows ``(r,)`` that are not there yet, of which ``values`` (r, columns) is all; threads may do so."""
         columns = np.flatnonzero(values.any(axis=0))
-        self.blocks.append(Block(np.asarray(rows), columns, values.take(columns, axis=1)))
+        self.blocks.append(Block(rows, columns, values.take(columns, axis=1)))
 
     def of(self, count: int) -> SparseRows:
         """The same blocks in a matrix of so many rows, in the order of these, in whatever order they were entered."""
@@ -86,6 +86,10 @@ class SparseRows:
                 out[block.rows[late] - first] = np.stack(sums, axis=1)[late]
         return out
 
+    def row_totals(self) -> np.ndarray:
+        """(m,) float: sums of the rows."""
+        return self.times(np.ones(self.shape[1]))
+
     def sums(self) -> np.ndarray:
         """(c,) float: sums of the columns."""
         out = np.zeros(self.shape[1])
@@ -97,7 +101,7 @@ class SparseRows:
         """(m, k) float32: some of the columns."""
         out = np.zeros((self.shape[0], len(columns)), np.float32)
         for block in self.blocks:
-            place, known = _places(block.columns, columns)
+            place, known = places_among(block.columns, columns)
             out[block.rows[:, None], np.flatnonzero(known)] = block.values.take(place[known], axis=1)
         return out
 
@@ -106,7 +110,7 @@ class SparseRows:
         out = np.zeros((len(rows), self.shape[1]), np.float32)
         for block in self.blocks:
             order = np.argsort(block.rows)
-            place, known = _places(block.rows[order], rows)
+            place, known = places_among(block.rows[order], rows)
             if known.any():
                 out[np.flatnonzero(known)[:, None], block.columns] = block.values[order[place[known]]]
         return out
@@ -135,11 +139,3 @@ class SparseRows:
             raise ValueError("blocks of rows do not fit")
         parts = zip(np.split(rows, ends[0]), np.split(columns, ends[1]), np.split(values, ends[2]), strict=True)
         return cls(shape, [Block(r, c, v.reshape(len(r), len(c))) for r, c, v in parts] if len(sizes) else [])
-
-
-def _places(known: np.ndarray, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where each of ``wanted`` (k,) is among ascending numbers ``known`` (n,), and whether it is there."""
-    if not len(known):
-        return np.zeros(len(wanted), np.int64), np.zeros(len(wanted), bool)
-    place = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
-    return place, known[place] == wanted

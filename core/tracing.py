@@ -172,8 +172,8 @@ class Tracer:
         return onward
 
 
-def thinned(rows, weights, faint=_FAINT) -> tuple[np.ndarray, np.ndarray]:
-    """Which of rays of some weights ``(n,)`` to follow, and the weights of these: faint ones for those left out too."""
+def thinned(rows, weights, faint) -> tuple[np.ndarray, np.ndarray]:
+    """Which of rays of weights ``(n,)`` to follow, and the weights of these: below ``faint`` for those left out too."""
     chance = np.minimum(weights / faint, 1.0)
     kept = np.flatnonzero(_drawn(rows, chance))
     return kept, weights[kept] / chance[kept]

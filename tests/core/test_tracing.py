@@ -69,7 +69,7 @@ def test_panes_that_mirror_show_all_orders_of_their_light(panes, monkeypatch):
 def test_thinned_rays_carry_the_weight_of_all():
     rng = np.random.default_rng(3)
     rows, weights = rng.integers(0, 5, 4_000), rng.uniform(0, 4e-4, 4_000)
-    kept, heavier = tracing.thinned(rows, weights)
+    kept, heavier = tracing.thinned(rows, weights, tracing._FAINT)
     whole, after = np.bincount(rows, weights, 5), np.bincount(rows[kept], heavier, 5)
     assert len(kept) < 3_000
     assert np.abs(after - whole).max() <= 4e-4
@@ -79,9 +79,9 @@ def test_thinned_rays_carry_the_weight_of_all():
 def test_what_is_thinned_does_not_depend_on_other_receivers():
     rng = np.random.default_rng(4)
     rows, weights = rng.integers(0, 4, 1_000), rng.uniform(0, 4e-4, 1_000)
-    kept, heavier = tracing.thinned(rows, weights)
+    kept, heavier = tracing.thinned(rows, weights, tracing._FAINT)
     mine = rows == 2
-    alone, heavy = tracing.thinned(rows[mine], weights[mine])
+    alone, heavy = tracing.thinned(rows[mine], weights[mine], tracing._FAINT)
     assert np.array_equal(np.flatnonzero(mine)[alone], kept[rows[kept] == 2])
     assert heavy == pytest.approx(heavier[rows[kept] == 2])
 
